@@ -7,14 +7,14 @@ PIP := $(BIN)/pip --quiet --disable-pip-version-check
 PACKAGE := $(shell find CMakeLists.txt pyproject.toml LICENSE README.md voxrt voxelize octree export rtl sim view board serve -type f -not -name '*.pyc' -not -path '*/.*' 2>/dev/null)
 CXX_FILES = $(shell find voxelize octree sim web examples tests -name '*.cpp' -o -name '*.h')
 
-.PHONY: help demo test slow lint lint-workflows hardware boards docs site web bench soak sanitize fuzz clean
+.PHONY: help demo test slow lint lint-scripts lint-workflows hardware boards docs site web bench soak sanitize fuzz clean
 .DELETE_ON_ERROR:
 
 help:
 	@echo "make demo    set up $(VENV), build the example scene and ray-trace its preview"
 	@echo "make test    set up $(VENV), run the tests on the installed wheel"
 	@echo "make slow    run the tests that take minutes: the board designs in simulation, every attack on the server"
-	@echo "make lint    ruff, mypy --strict, clang-format, verilator --lint-only -Wall; the workflows"
+	@echo "make lint    ruff, mypy --strict, clang-format, verilator --lint-only -Wall; Biome and tsc; the workflows"
 	@echo "make hardware  check the registers, run the cocotb benches and the formal proofs"
 	@echo "make boards  build the designs of the boards anew, place and route them, simulate what was placed"
 	@echo "make docs    build the manual into build/docs"
@@ -36,12 +36,26 @@ test: $(VENV)/.installed $(VENV)/.tools
 slow: $(VENV)/.installed $(VENV)/.tools
 	VOXRT_EXPECT_INSTALLED=1 $(BIN)/pytest -m slow
 
-lint: $(VENV)/.installed $(VENV)/.tools lint-workflows
+lint: $(VENV)/.installed $(VENV)/.tools lint-workflows lint-scripts
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/clang-format --dry-run --Werror $(CXX_FILES)
 	$(BIN)/python rtl/lint.py
+
+# The JavaScript of both pages and of the npm package.
+ifneq ($(shell command -v npm),)
+lint-scripts: web/node_modules/.package-lock.json
+	web/node_modules/.bin/biome ci --error-on-warnings --colors=off
+	web/node_modules/.bin/tsc -p web
+else
+lint-scripts:
+	@echo "the JavaScript is not checked: npm is not here"
+endif
+
+web/node_modules/.package-lock.json: web/package.json web/package-lock.json
+	npm ci --prefix web --no-audit --no-fund
+	@touch $@
 
 # The workflows, forms and texts of .github. actionlint checks the shell scripts in them by shellcheck.
 WORKFLOW_FILES := .github .pre-commit-config.yaml .yamllint
@@ -83,8 +97,8 @@ boards: $(VENV)/.installed $(VENV)/.tools $(VENV)/.estimate
 docs: $(VENV)/.installed $(VENV)/.docs
 	$(BIN)/sphinx-build --quiet --fail-on-warning -b html docs build/docs
 
-# It needs npm, which fetches the loaders of three.js.
-site: $(VENV)/.installed $(VENV)/.web
+# It needs npm, which fetches the loaders of three.js and the compiler of TypeScript.
+site: $(VENV)/.installed $(VENV)/.web web/node_modules/.package-lock.json
 	$(BIN)/python web/make_site.py
 
 web: site $(VENV)/.tools
@@ -178,7 +192,7 @@ build/fuzz/native/%-fuzzer: tests/fuzz/native/%.cpp tests/fuzz/native/driver.cpp
 .SECONDARY: $(COVERED) $(foreach library,libvoxelize liboctree libsim,$(SANITIZERS:%=build/sanitize/%/$(library).a))
 
 clean:
-	rm -rf $(VENV) build demo
+	rm -rf $(VENV) build demo web/node_modules
 
 # Without pip's isolation, so that objects that are made stay valid; with ccache where it is, so that other folders of
 # the same sources are built quickly too.

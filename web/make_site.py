@@ -4,21 +4,18 @@ It holds the page (web/page), what it shares with the page of the server (serve/
 with the modules of web/build_voxrt.py and web/build_hardware.py, the loaders of three.js from npm without their
 manuals, and example scenes. Nothing is bundled.
 
-    python web/make_site.py            # needs the package voxrt, npm, and the group `web` of pyproject.toml
+    npm ci --prefix web                # three.js and TypeScript, as web/package-lock.json pins them
+    python web/make_site.py            # needs the package voxrt, and the group `web` of pyproject.toml
     python -m http.server -d build/site
 """
 
 from __future__ import annotations
 
-import base64
-import hashlib
 import json
 import re
 import shutil
 import subprocess
 import sys
-import tarfile
-import tempfile
 from pathlib import Path
 
 from board_files import add_boards
@@ -32,23 +29,20 @@ from voxrt.octree import BOARDS
 SITE = ROOT / "build" / "site"
 PACKAGE = BUILD / "package"
 
-THREE = ("three@0.187.0", "Qiu7R+Cmh8CstZsY1uJOSWnVlfo7ZtNLV7mF8Jltk3LB3AtDu9cRZlcnRKkAk8Y4z6KKw35z7Y7Urd7jWY8etA==")
-AXE = ("axe-core@4.14.1", "FHfa+lmNjQZfJz1q8wKqIDwC6DExcHt/pkjNQb09a3NPjCKg2rhu5qb2S4r76ASyFNNtuFooJpZe37OgudVGtQ==")
-"""Packages of npm and their hashes. axe-core, which checks pages for accessibility, is for tests alone."""
+MODULES = ROOT / "web" / "node_modules"
 LOADERS = ("GLTFLoader", "OBJLoader", "MTLLoader", "STLLoader", "PLYLoader", "USDLoader")
 ADDONS = (*(f"loaders/{name}.js" for name in LOADERS), "libs/meshopt_decoder.module.js")
 MANUAL = re.compile(r"^[ \t]*/\*\*\n(?:[ \t]*\*(?!/).*\n)*[ \t]*\*/\n", re.MULTILINE)
+TYPES = re.compile(r"^[ \t]*/\*\*(?:(?!\*/)[\s\S])*\*/\n|/\*\*(?:(?!\*/)[\s\S])*\*/ ?", re.MULTILINE)
 IMPORT = re.compile(r"""(from\s+)(['"])([^'"]+)\2""")
 
 SHARED = (
-    "camera.js", "controls.css", "elements.js", "figures.js", "flight.js", "frame_requests.js", "gestures.js",
-    "glide.js", "icon.svg", "light.js", "navigation.js", "notices.js", "picture.js", "pilot.js", "resolution.js",
-    "style.css", "vectors.js", "views.js",
+    "camera.js", "controls.css", "crc32.js", "drop.js", "elements.js", "events.js", "figures.js", "flight.js",
+    "frame_requests.js", "gestures.js", "glide.js", "icon.svg", "light.js", "navigation.js", "notices.js",
+    "picture.js", "pilot.js", "resolution.js", "save.js", "style.css", "tools.js", "vectors.js", "viewpoint.js",
+    "views.js",
 )  # fmt: skip
 """Files of the server's page."""
-
-SCRIPTS = ("voxrt.js", "instance.js", "scene.js", "hardware.js")
-"""Files of the package."""
 
 EXAMPLES = {
     "courtyard": ("Courtyard", ("courtyard.glb",)),
@@ -62,13 +56,14 @@ EXAMPLES = {
 def main() -> None:
     """Build the modules, and put the site together anew."""
     make_site(build(), build_hardware("tiny"))
-    npm_package(*AXE)
     files = [path for path in SITE.rglob("*") if path.is_file()]
     print(f"{SITE.relative_to(ROOT)}: {len(files)} files, {sum(path.stat().st_size for path in files):,} bytes")
 
 
 def make_site(*modules: Path) -> None:
     """Put the site together in a folder of its own, then in place of the old one."""
+    if not MODULES.exists():
+        sys.exit("web/make_site.py takes three.js from web/node_modules, which is not here: npm ci --prefix web")
     made = BUILD / "site"
     shutil.rmtree(made, ignore_errors=True)
     shutil.copytree(ROOT / "web" / "page", made)
@@ -76,8 +71,12 @@ def make_site(*modules: Path) -> None:
         shutil.copyfile(ROOT / "serve" / "page" / name, made / name)
     make_package(modules)
     (made / "voxrt").mkdir()
-    for name in (*SCRIPTS, *(module.name for module in modules)):
-        shutil.copyfile(PACKAGE / name, made / "voxrt" / name)
+    for script in (*PACKAGE.glob("*.js"), ROOT / "octree" / "words.js", *modules):
+        shutil.copyfile(script, made / "voxrt" / script.name)
+    for script in made.rglob("*.js"):
+        script.write_text(
+            TYPES.sub("", script.read_text(encoding="utf-8")), encoding="utf-8"
+        )  # no types, as for three.js
     shutil.copyfile(ROOT / "LICENSE", made / "LICENSE")
     (made / "package.json").write_text('{"private": true, "type": "module"}\n')  # for Node
     add_three(made / "three")
@@ -102,6 +101,8 @@ def make_package(modules: tuple[Path, ...]) -> None:
     for module in modules:
         shutil.copyfile(module, PACKAGE / module.name)
     shutil.copyfile(ROOT / "LICENSE", PACKAGE / "LICENSE")
+    compiler = (MODULES / ".bin" / "tsc", "-p", "web/package", "--outDir", PACKAGE)
+    subprocess.run(compiler, cwd=ROOT, check=True)
 
 
 def add_examples(folder: Path) -> None:
@@ -116,7 +117,7 @@ def add_examples(folder: Path) -> None:
 
 def add_three(folder: Path) -> None:
     """Copy the loaders and what they import. Workers have no import maps: names of packages become paths."""
-    package = npm_package(*THREE)
+    package = MODULES / "three"
     folder.mkdir()
     shutil.copyfile(package / "LICENSE", folder / "LICENSE")
     core = (package / "build" / "three.core.js").read_text(encoding="utf-8")
@@ -160,24 +161,6 @@ def resolved(name: str, path: str) -> str:
         elif part != ".":
             parts.append(part)
     return "/".join(parts)
-
-
-def npm_package(name: str, integrity: str) -> Path:
-    """Return the folder of a package; npm fetches it once. `integrity`: SHA-512, as npm's registry gives it."""
-    folder = BUILD / "npm" / name.replace("@", "-")
-    if not folder.exists():
-        if shutil.which("npm") is None:
-            sys.exit(f"web/make_site.py fetches {name} by npm, which is not here: apt install npm")
-        with tempfile.TemporaryDirectory(dir=BUILD) as scratch:
-            subprocess.run(["npm", "pack", "--silent", name], cwd=scratch, check=True, stdout=subprocess.DEVNULL)
-            archive = Path(scratch) / f"{name.replace('@', '-')}.tgz"
-            if base64.b64encode(hashlib.sha512(archive.read_bytes()).digest()).decode() != integrity:
-                sys.exit(f"{name}: the registry has another package than the one that was pinned in web/make_site.py")
-            with tarfile.open(archive) as packed:
-                packed.extractall(scratch, filter="data")
-            folder.parent.mkdir(exist_ok=True)
-            (Path(scratch) / "package").rename(folder)
-    return folder
 
 
 if __name__ == "__main__":

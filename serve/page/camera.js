@@ -8,41 +8,52 @@ const REGISTER_LIMIT = 32767;
 const DIRECTION_LIMIT = (1 << 20) - 1;
 export const FIELD_OF_VIEW = { min: 5, max: 140, usual: 35 };
 
-// A pose: eye in voxels; yaw and pitch in radians, both 0 for a look along -z; fov in degrees across the height of the
-// largest 4:3 part of the frame, so that a page of any shape shows as much; distance in voxels from the eye to the target, around which the camera orbits; flips mirror the picture.
-export const pose = (eye, yaw, pitch, fov, distance, flipX = false, flipY = false) =>
-  ({ eye, yaw, pitch, fov, distance, flipX, flipY });
+/** @import { Vector } from "./vectors.js" */
 
-export function axes({ yaw, pitch }) {
+/** @typedef {readonly number[]} Size columns and rows of a frame */
+/** @typedef {[Vector, Vector]} Box its lowest and its highest corner */
+
+/** The camera for people. The eye is in voxels. Yaw and pitch are in radians, both 0 for a look along -z. The field
+ * of view is in degrees across the height of the largest 4:3 part of the frame, so that a page of any shape shows
+ * as much. The distance is that from the eye to the target, around which the camera orbits, in voxels. Flips mirror
+ * the picture. @typedef {{ eye: Vector, yaw: number, pitch: number, fov: number, distance: number, flipX: boolean,
+ * flipY: boolean }} Pose */
+
+/** `position`: in 1/16 voxel. @typedef {{ position: Vector, look: Vector, right: Vector, up: Vector }} Registers */
+
+/** @param {Pick<Pose, "yaw" | "pitch">} angles */ export function axes({ yaw, pitch }) {
   const [sy, cy, sp, cp] = [Math.sin(yaw), Math.cos(yaw), Math.sin(pitch), Math.cos(pitch)];
   return { look: [cp * sy, sp, -cp * cy], right: [cy, 0, sy], up: [-sp * sy, cp, sp * cy] };
 }
 
-export const target = (view) => add(view.eye, axes(view).look, view.distance);
-export const measure = ([width, height]) => Math.min(0.75 * width, height);
+/** @param {Pose} view */ export const target = (view) => add(view.eye, axes(view).look, view.distance);
+/** @param {Size} size */ export const measure = ([width, height]) => Math.min(0.75 * width, height);
+
+/** @param {number} fov @param {Size} size */
 export const focal = (fov, size) => measure(size) / (2 * Math.tan((fov * Math.PI) / 360));
+
+/** @param {number} ahead @param {Size} size */
 export const fieldOfView = (ahead, size) => (Math.atan(measure(size) / 2 / ahead) * 360) / Math.PI;
 
-export function toRegisters(view, size) {
+/** @param {Pose} view @param {Size} size */ export function toRegisters(view, size) {
   const { look, right, up } = axes(view);
   const halves = size.map((side) => Math.floor(side / 2));
   const ahead = scale(look, focal(view.fov, size));
   const rounding = 1 + halves[0] + halves[1];
-  const reach = Math.max(...[0, 1, 2].map((axis) =>
-    Math.abs(ahead[axis]) + Math.abs(right[axis]) * halves[0] + Math.abs(up[axis]) * halves[1]));
+  const reaches = ahead.map((part, i) => Math.abs(part) + Math.abs(right[i]) * halves[0] + Math.abs(up[i]) * halves[1]);
+  const reach = Math.max(...reaches);
   const largest = Math.max(...[...ahead, ...right, ...up].map(Math.abs));
   const factor = Math.min(REGISTER_LIMIT / largest, (DIRECTION_LIMIT - rounding) / reach);
+  /** @param {Vector} triple */
   const whole = (triple, sign = 1) => triple.map((value) => Math.round(value * factor * sign) + 0);
-  return {
-    position: view.eye.map((value) => Math.round(value * 16)),
-    look: whole(ahead),
-    right: whole(right, view.flipX ? -1 : 1),
-    up: whole(up, view.flipY ? -1 : 1),
-  };
+  const [rightward, upward] = [whole(right, view.flipX ? -1 : 1), whole(up, view.flipY ? -1 : 1)];
+  const position = view.eye.map((value) => Math.round(value * 16));
+  return { position, look: whole(ahead), right: rightward, up: upward };
 }
 
-// The pose of registers that were made for frames of `size`. The target is the point of the central ray that is nearest to
-// `centre`, the middle of the scene. For frames of another size, all that the registers show stays in the picture.
+/** The pose of registers that were made for frames of `size`. The target is the point of the central ray that is
+ * nearest to `centre`, the middle of the scene. For frames of another size, all that the registers show stays in
+ * the picture. @param {Registers} registers @param {Size} size @param {Vector} centre */
 export function fromRegisters({ position, look, right, up }, size, centre, shownSize = size) {
   const eye = position.map((value) => value / 16);
   const ahead = scale(look, 1 / (length(look) || 1));
@@ -53,19 +64,20 @@ export function fromRegisters({ position, look, right, up }, size, centre, shown
   const upright = axes({ yaw, pitch });
   const fit = Math.min(shownSize[0] / size[0], shownSize[1] / size[1]);
   const towards = subtract(centre, eye);
-  return pose(
-    eye, yaw, pitch,
-    clamp(fieldOfView((fit * length(look)) / (length(right) || 1), shownSize), FIELD_OF_VIEW.min, FIELD_OF_VIEW.max),
-    Math.max(dot(towards, ahead), length(towards) / 8, 1),
-    dot(upright.right, right) < 0, dot(upright.up, up) < 0,
-  );
+  const fov = fieldOfView((fit * length(look)) / (length(right) || 1), shownSize);
+  const distance = Math.max(dot(towards, ahead), length(towards) / 8, 1);
+  const [flipX, flipY] = [dot(upright.right, right) < 0, dot(upright.up, up) < 0];
+  return { eye, yaw, pitch, fov: clamp(fov, FIELD_OF_VIEW.min, FIELD_OF_VIEW.max), distance, flipX, flipY };
 }
 
-// The direction of the ray through a pixel, as the hardware computes it.
+/** The direction of the ray through a pixel, as the hardware computes it. @param {Omit<Registers, "position">}
+ * registers @param {Size} size @param {number} column @param {number} row */
 export const pixelDirection = ({ look, right, up }, [width, height], column, row) =>
-  look.map((value, axis) => value + right[axis] * (column - Math.floor(width / 2)) + up[axis] * (Math.floor(height / 2) - row));
+  look.map(
+    (value, axis) => value + right[axis] * (column - Math.floor(width / 2)) + up[axis] * (Math.floor(height / 2) - row),
+  );
 
-export function lookAlong(view, direction) {
+/** @param {Pose} view @param {Vector} direction */ export function lookAlong(view, direction) {
   const size = length(direction);
   if (size < 1e-9) return view;
   const [x, y, z] = scale(direction, 1 / size);

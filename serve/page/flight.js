@@ -4,40 +4,55 @@ const TURN = 1.6; // radians per second
 const DOLLY = 1.2; // e-folds per second
 const SPEED = 0.3; // sides of the world per second
 const DEAD_ZONE = 0.15; // of the sticks of a gamepad
+/** @typedef {Record<string, [number, number]>} Ways axis and sign by the code of a key */
+
+/** @type {Ways} */
 const MOVES = { KeyD: [0, 1], KeyA: [0, -1], KeyE: [1, 1], KeyQ: [1, -1], KeyW: [2, 1], KeyS: [2, -1] };
-const TURNS = { ArrowRight: [0, 1], ArrowLeft: [0, -1], ArrowUp: [1, 1], ArrowDown: [1, -1] };
-const DOLLIES = { Equal: -1, NumpadAdd: -1, Minus: 1, NumpadSubtract: 1 };
+/** @type {Ways} */ const TURNS = { ArrowRight: [0, 1], ArrowLeft: [0, -1], ArrowUp: [1, 1], ArrowDown: [1, -1] };
+/** @type {Record<string, number>} */ const DOLLIES = { Equal: -1, NumpadAdd: -1, Minus: 1, NumpadSubtract: 1 };
 const TYPES_TEXT = "select, dialog, input:is([type=text], [type=number], [type=password])";
 const USES_ARROWS = `${TYPES_TEXT}, input, [role=toolbar]`;
 
-// `actions` has fly(right, up, forward) in sides of the world, rotate(right, up) in radians, dolly(factor), and `commands`,
-// functions by the code of a key.
+/** @import { Commands } from "./tools.js" */
+
+/** What keys do: `fly` takes sides of the world, `rotate` radians. @typedef {{ fly: (right: number, up: number,
+ * forward: number) => void, rotate: (right: number, up: number) => void, dolly: (factor: number) => void, commands:
+ * Commands }} Actions */
+
 export class Flight {
-  constructor(pad, actions) {
+  /** @type {Set<string>} codes of keys */ #held = new Set();
+  #modifiers = { shiftKey: false, altKey: false };
+  #last = performance.now();
+
+  /** @param {HTMLElement} pad @param {Actions} actions */ constructor(pad, actions) {
     this.actions = actions;
-    this.held = new Set();
-    this.modifiers = {};
-    this.last = performance.now();
     addEventListener("keydown", (event) => this.press(event));
-    addEventListener("keyup", (event) => { this.modifiers = event; this.held.delete(event.code); });
-    addEventListener("blur", () => this.held.clear());
+    addEventListener("keyup", (event) => {
+      this.#modifiers = event;
+      this.#held.delete(event.code);
+    });
+    addEventListener("blur", () => this.#held.clear());
     for (const button of pad.querySelectorAll("button")) {
-      const { key } = button.dataset;
-      button.addEventListener("pointerdown", () => this.held.add(key));
-      for (const end of ["pointerup", "pointerleave", "pointercancel"]) button.addEventListener(end, () => this.held.delete(key));
+      const { key = "" } = button.dataset;
+      button.addEventListener("pointerdown", () => this.#held.add(key));
+      for (const end of /** @type {const} */ (["pointerup", "pointerleave", "pointercancel"]))
+        button.addEventListener(end, () => this.#held.delete(key));
     }
   }
 
-  get active() { return this.held.size > 0; }
+  get active() {
+    return this.#held.size > 0;
+  }
 
-  press(event) {
-    this.modifiers = event;
+  /** @param {KeyboardEvent} event */ press(event) {
+    this.#modifiers = event;
     const { code } = event;
-    if (event.ctrlKey || event.metaKey || event.target.closest?.(TYPES_TEXT)) return;
+    const focused = event.target instanceof Element ? event.target : null;
+    if (event.ctrlKey || event.metaKey || focused?.closest(TYPES_TEXT)) return;
     // Arrows belong to the slider or the group of buttons that has the focus.
-    if (code in TURNS && event.target.closest?.(USES_ARROWS)) return;
+    if (code in TURNS && focused?.closest(USES_ARROWS)) return;
     if (code in MOVES || code in TURNS || code in DOLLIES) {
-      this.held.add(code);
+      this.#held.add(code);
       event.preventDefault();
     } else if (this.actions.commands[code] && !event.repeat) {
       event.preventDefault();
@@ -45,32 +60,33 @@ export class Flight {
     }
   }
 
-  // Called once per frame of the screen.
+  /** Called once per frame of the screen. */
   step() {
     const now = performance.now();
-    const seconds = Math.min(0.1, (now - this.last) / 1000);
-    this.last = now;
+    const seconds = Math.min(0.1, (now - this.#last) / 1000);
+    this.#last = now;
     const going = [0, 0, 0];
     const turning = [0, 0];
     let dollying = 0;
-    for (const code of this.held) {
+    for (const code of this.#held) {
       if (code in MOVES) going[MOVES[code][0]] += MOVES[code][1];
       if (code in TURNS) turning[TURNS[code][0]] += TURNS[code][1];
       if (code in DOLLIES) dollying += DOLLIES[code];
     }
     for (const gamepad of navigator.getGamepads?.() ?? []) {
       if (!gamepad) continue;
+      /** @param {number} axis */
       const stick = (axis) => (Math.abs(gamepad.axes[axis] ?? 0) > DEAD_ZONE ? gamepad.axes[axis] : 0);
-      const trigger = (button) => gamepad.buttons[button]?.value ?? 0;
+      /** @param {number} button */ const trigger = (button) => gamepad.buttons[button]?.value ?? 0;
       going[0] += stick(0);
       going[2] -= stick(1);
       going[1] += trigger(7) - trigger(6);
       turning[0] += stick(2);
       turning[1] -= stick(3);
     }
-    const speed = SPEED * seconds * (this.modifiers.shiftKey ? 3 : 1) * (this.modifiers.altKey ? 0.2 : 1);
-    if (going.some(Boolean)) this.actions.fly(...going.map((part) => part * speed));
-    if (turning.some(Boolean)) this.actions.rotate(...turning.map((part) => part * TURN * seconds));
+    const speed = SPEED * seconds * (this.#modifiers.shiftKey ? 3 : 1) * (this.#modifiers.altKey ? 0.2 : 1);
+    if (going.some(Boolean)) this.actions.fly(going[0] * speed, going[1] * speed, going[2] * speed);
+    if (turning.some(Boolean)) this.actions.rotate(turning[0] * TURN * seconds, turning[1] * TURN * seconds);
     if (dollying) this.actions.dolly(Math.exp(dollying * DOLLY * seconds));
   }
 }

@@ -2,33 +2,39 @@
 
 import { axes, target } from "./camera.js";
 import { add, scale } from "./vectors.js";
+/** @import { Pose } from "./camera.js" */
 
 const SECONDS = 0.35;
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
 
 export class Glide {
-  constructor() { this.end = null; }
+  /** @type {{ from: Pose, end: Pose, began: number, direct: boolean } | null} */ #way = null;
 
-  start(from, to, direct = false) {
-    Object.assign(this, { from, end: to, began: performance.now(), direct: direct || calm.matches });
+  /** @param {Pose} from @param {Pose} end */ start(from, end, direct = false) {
+    this.#way = { from, end, began: performance.now(), direct: direct || calm.matches };
   }
 
-  stop() { this.end = null; }
+  stop() {
+    this.#way = null;
+  }
 
-  // The pose now, or null when there is no glide. Target, angles and the logarithm of the distance change evenly.
+  /** The pose now, or null when there is no glide. Target, angles and the logarithm of the distance change evenly. */
   step() {
-    const { from, end } = this;
-    if (!end) return null;
-    const part = this.direct ? 1 : Math.min(1, (performance.now() - this.began) / 1000 / SECONDS);
+    if (!this.#way) return null;
+    const { from, end, began, direct } = this.#way;
+    const part = direct ? 1 : Math.min(1, (performance.now() - began) / 1000 / SECONDS);
     if (part === 1) {
-      this.end = null;
+      this.#way = null;
       return end;
     }
     const eased = part * part * (3 - 2 * part);
-    const mix = (a, b) => a + (b - a) * eased;
+    /** @param {number} a @param {number} b */ const mix = (a, b) => a + (b - a) * eased;
     const turn = ((((end.yaw - from.yaw) % (2 * Math.PI)) + 3 * Math.PI) % (2 * Math.PI)) - Math.PI; // the shorter way
     const between = {
-      ...end, yaw: from.yaw + turn * eased, pitch: mix(from.pitch, end.pitch), fov: mix(from.fov, end.fov),
+      ...end,
+      yaw: from.yaw + turn * eased,
+      pitch: mix(from.pitch, end.pitch),
+      fov: mix(from.fov, end.fov),
       distance: Math.exp(mix(Math.log(from.distance), Math.log(end.distance))),
     };
     const middle = add(scale(target(from), 1 - eased), target(end), eased);

@@ -1,16 +1,20 @@
 // What the page says over the picture: notices with progress, and why there is no connection.
 
-import { $ } from "./elements.js";
+import { $, part } from "./elements.js";
+/** @import { Refusal } from "./refusal.js" */
 
 const box = () => $("notice");
 
+/** `progress`: the part that is done, null for no bar. `cancel`: what a button does, null for none. @param {"error"
+ * | "progress"} kind @param {string} title @param {string} [text] @param {{ progress?: number | null, cancel?: (()
+ * => void) | null }} [options] */
 export function notice(kind, title, text = "", { progress = null, cancel = null } = {}) {
   box().hidden = false;
   box().dataset.kind = kind;
   box().setAttribute("role", kind === "error" ? "alert" : "status");
-  box().querySelector("strong").textContent = title;
-  box().querySelector("p").textContent = text;
-  const bar = box().querySelector("progress");
+  part(box(), "strong").textContent = title;
+  part(box(), "p").textContent = text;
+  const bar = part(box(), "progress");
   bar.hidden = progress === null;
   if (progress !== null) bar.value = progress;
   $("cancel").hidden = cancel === null;
@@ -18,10 +22,11 @@ export function notice(kind, title, text = "", { progress = null, cancel = null 
   $("close").hidden = kind !== "error";
 }
 
-export const dismiss = () => { box().hidden = true; };
-export const noticeKind = () => (box().hidden ? null : box().dataset.kind);
+export const dismiss = () => {
+  box().hidden = true;
+};
 
-// `reason` is one of those of refusal.js, or "lost".
+/** @param {Refusal} refusal @param {number} seconds until the next try */
 export function showAway({ reason, text = "" }, seconds) {
   const [title, advice] = {
     token: ["The token is missing or wrong", "Enter the token that the server printed at its start."],
@@ -32,11 +37,13 @@ export function showAway({ reason, text = "" }, seconds) {
     lost: ["The connection was lost", "The page connects again by itself."],
   }[reason];
   $("away").hidden = false;
-  $("away").querySelector("h2").textContent = title;
-  $("away").querySelector("p").textContent = advice;
+  part($("away"), "h2").textContent = title;
+  part($("away"), "p").textContent = advice;
   $("token-form").hidden = reason !== "token";
   $("retry").hidden = reason === "token";
   $("retry").title = `It tries again in ${Math.ceil(seconds)} s`;
 }
 
-export const hideAway = () => { $("away").hidden = true; };
+export const hideAway = () => {
+  $("away").hidden = true;
+};

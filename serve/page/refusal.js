@@ -1,8 +1,12 @@
 // Why no connection was made. A browser tells a page nothing of a refused WebSocket, so the page asks over HTTP.
 
-const REASONS = { 401: "token", 403: "origin", 404: "version", 503: "full" };
+/** @typedef {"token" | "origin" | "version" | "full" | "gone" | "lost"} Reason */
+/** @typedef {{ reason: Reason, text?: string }} Refusal */
 
-// Resolves with {reason, text}: token, origin, version, full, or gone when no server answers; lost for all else.
+/** @type {Record<number, Reason>} */ const REASONS = { 401: "token", 403: "origin", 404: "version", 503: "full" };
+
+/** The reason is "gone" when no server answers, and "lost" where there is no other. @param {string} path @param
+ * {Record<string, string>} query @returns {Promise<Refusal>} */
 export async function askForReason(path, query) {
   const fields = new URLSearchParams(query);
   fields.set("origin", location.origin);

@@ -1,6 +1,9 @@
 // The size of frames: as fine as the stage at rest, coarser while the camera moves, and fine again in steps where the
 // device is slow. All sizes have the shape of the stage.
 
+/** @import { Size } from "./camera.js" @import { Wanted } from "./frame_requests.js" */
+/** @import { Device } from "./protocol.js" */
+
 const MOVING = 0.05; // seconds that a frame may take while the camera moves
 const STEP = 1; // seconds: a finer frame that takes longer than this comes after one of half its columns
 const LONGEST = 60; // seconds that a frame may take at all
@@ -10,31 +13,35 @@ const PIXELS = 1 << 22; // of a frame
 const RATIO = 2; // of the screen's pixels to those of the page, at most
 
 export class Resolution {
-  constructor() {
-    this.cost = null; // seconds per pixel
-    this.fixed = null; // a size that was chosen in place of the stage's
-  }
+  /** @type {number | null} seconds per pixel */ cost = null;
+  /** @type {Size | null} a size that was chosen in place of the stage's */ fixed = null;
 
-  // Learn from a frame; what the network takes counts too.
+  /** Learn from a frame; what the network takes counts too. @param {Size} size @param {number} seconds */
   measure([width, height], seconds) {
     const cost = seconds / (width * height);
     this.cost = this.cost === null ? cost : Math.sqrt(this.cost * cost);
   }
 
-  seconds([width, height]) { return this.cost === null ? 0 : this.cost * width * height; }
+  /** @param {Size} size */ seconds = ([width, height]) => (this.cost === null ? 0 : this.cost * width * height);
 
-  // The frame of the stage at rest: {size, samples}; with 2 samples a frame has twice the columns and rows.
+  /** The frame of the stage at rest; 2 samples double columns and rows. @param {HTMLElement} stage @param {Device}
+   * device */
   finest(stage, device) {
     const ratio = Math.min(devicePixelRatio, RATIO);
     const wanted = this.fixed ?? [stage.clientWidth * ratio, stage.clientHeight * ratio];
     const size = fitting(wanted, 1, device);
     const doubled = size.map((side) => 2 * side);
-    const smooth = !this.fixed && this.cost !== null && this.seconds(doubled) <= SMOOTH && doubled[0] * doubled[1] <= PIXELS
-      && doubled.every((side, i) => side <= device.size[i]) && doubled[0] % device.width_step === 0;
+    const smooth =
+      !this.fixed &&
+      this.cost !== null &&
+      this.seconds(doubled) <= SMOOTH &&
+      doubled[0] * doubled[1] <= PIXELS &&
+      doubled.every((side, i) => side <= device.size[i]) &&
+      doubled[0] % device.width_step === 0;
     return { size, samples: smooth ? 2 : 1 };
   }
 
-  // The frame while the camera moves.
+  /** The frame while the camera moves. @param {HTMLElement} stage @param {Device} device */
   moving(stage, device) {
     const { size } = this.finest(stage, device);
     if (this.cost === null) return { size: fitting(size, COARSEST, device), samples: 1 };
@@ -42,7 +49,8 @@ export class Resolution {
     return { size: fitting(size, Math.ceil(part * 2) / 2, device), samples: 1 };
   }
 
-  // The frame after one of `shown` columns and rows when the camera has come to rest.
+  /** The frame after one of `shown` columns and rows when the camera has come to rest. @param {HTMLElement} stage
+   * @param {Device} device @param {Size} shown */
   next(stage, device, shown) {
     const { size, samples } = this.finest(stage, device);
     if (samples > 1) return { size, samples };
@@ -56,7 +64,7 @@ export class Resolution {
   }
 }
 
-// A size of the same shape, divided by `part`, that the device can render.
+/** A part of a size that the device can render. @param {Size} size @param {number} part @param {Device} device */
 function fitting([width, height], part, device) {
   const [widest, highest] = device.size;
   const factor = Math.min(1 / part, widest / width, highest / height, Math.sqrt(PIXELS / (width * height)));

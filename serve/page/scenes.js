@@ -1,59 +1,68 @@
 // The scenes: those of the server, and files that are opened or dropped. Loading shows its progress and can be cancelled.
 
-import { $, makeButton, makeToolbar, pressed } from "./elements.js";
+import { acceptFiles } from "./drop.js";
+import { $, all, makeButton, makeToolbar, pressed } from "./elements.js";
 import { dismiss, notice } from "./notices.js";
 import { uploadFiles } from "./upload.js";
 
-const STAGES = { send: "Sending", read: "Reading", write: "Writing to the device", verify: "Verifying", render: "Rendering the first frame",
-  load: "Loading the file", fit: "Fitting the grid", colour: "Choosing colours", voxelize: "Voxelizing", octree: "Building the octree" };
+/** @type {Record<string, string>} */ const STAGES = {
+  send: "Sending",
+  read: "Reading",
+  write: "Writing to the device",
+  verify: "Verifying",
+  render: "Rendering the first frame",
+  load: "Loading the file",
+  fit: "Fitting the grid",
+  colour: "Choosing colours",
+  voxelize: "Voxelizing",
+  octree: "Building the octree",
+};
 const ALSO = [".json", ".bin", ".mtl", ".png", ".jpg", ".jpeg"]; // what scene files refer to
 
-// `app` is that of main.js.
+/** @import { App } from "./app.js" @import { Hello, State } from "./protocol.js" */
+
+/** @typedef {(stage: string, done: number, total: number) => void} OnProgress */
+
 export class Scenes {
-  constructor(app) {
+  /** @param {App} app */ constructor(app) {
     this.app = app;
-    for (const bar of document.querySelectorAll("[data-scenes]")) makeToolbar(bar);
-    for (const button of document.querySelectorAll("[data-open]")) button.onclick = () => $("files").click();
-    $("files").onchange = ({ target }) => { this.open([...target.files]); target.value = ""; };
-    let drags = 0;
-    addEventListener("dragenter", (event) => { event.preventDefault(); drags += 1; $("drop").hidden = false; });
-    addEventListener("dragleave", () => { drags -= 1; $("drop").hidden = drags <= 0; });
-    addEventListener("dragover", (event) => event.preventDefault());
-    addEventListener("drop", (event) => {
-      event.preventDefault();
-      drags = 0;
-      $("drop").hidden = true;
-      this.open([...event.dataTransfer.files]);
-    });
+    for (const bar of all("[data-scenes]")) makeToolbar(bar);
+    for (const button of all("[data-open]")) button.onclick = () => $("files").click();
+    acceptFiles((files) => this.open(files));
   }
 
-  hello({ scenes, suffixes }) {
-    for (const text of document.querySelectorAll("[data-formats]")) text.textContent = `Opens ${suffixes.join(" ")}`;
+  /** @param {Hello} hello */ hello({ scenes, suffixes }) {
+    for (const text of all("[data-formats]")) text.textContent = `Opens ${suffixes.join(" ")}`;
     $("files").accept = [...suffixes, ...ALSO].join(",");
     $("examples").hidden = scenes.length === 0;
-    for (const bar of document.querySelectorAll("[data-scenes]")) {
+    for (const bar of all("[data-scenes]")) {
       bar.replaceChildren();
-      for (const name of scenes) makeButton(bar, name, () => this.show(name)).dataset.scene = name;
+      for (const name of scenes) makeButton(bar, name, () => this.#request(name)).dataset.scene = name;
     }
   }
 
-  mark({ scene }) {
-    for (const made of document.querySelectorAll("[data-scene]")) pressed(made, made.dataset.scene === scene.name);
+  /** @param {State} state */ show({ scene }) {
+    for (const made of all("[data-scene]")) pressed(made, made.dataset.scene === scene.name);
     $("empty").hidden = scene.number !== 0;
     $("stage").classList.toggle("empty", scene.number === 0);
   }
 
-  show(name) {
-    this.load(name, (report, signal) => this.app.connection.request("show", { scene: name }, ({ stage, done, total }) => report(stage, done, total)));
+  /** @param {string} name */ #request(name) {
+    this.load(name, (report) =>
+      this.app.connection.request("show", { scene: name }, ({ stage, done, total }) => report(stage, done, total)),
+    );
   }
 
-  open(files) {
-    if (files.length) this.load(files[0].name, (report, signal) => uploadFiles(this.app.connection, files, report, signal));
+  /** @param {File[]} files */ open(files) {
+    if (files.length)
+      this.load(files[0].name, (report, signal) => uploadFiles(this.app.connection, files, report, signal));
   }
 
-  // Run what loads another scene.
+  /** Run what loads another scene. @param {string} name @param {(report: OnProgress, signal: AbortSignal) =>
+   * Promise<unknown>} run */
   async load(name, run) {
-    if (!this.app.hasControl()) return notice("error", "You do not have control", "Take control before you change the scene.");
+    if (!this.app.hasControl())
+      return notice("error", "You do not have control", "Take control before you change the scene.");
     const aborter = new AbortController();
     const cancel = () => {
       aborter.abort();
@@ -63,12 +72,14 @@ export class Scenes {
     this.app.coarsen();
     try {
       await run((stage, done, total) => {
-        if (!aborter.signal.aborted) notice("progress", `${name} …`, STAGES[stage] ?? stage, { progress: total ? done / total : 0, cancel });
+        if (!aborter.signal.aborted)
+          notice("progress", `${name} …`, STAGES[stage] ?? stage, { progress: total ? done / total : 0, cancel });
       }, aborter.signal);
       dismiss();
     } catch (error) {
+      const { message } = /** @type {Error} */ (error);
       if (aborter.signal.aborted) dismiss();
-      else notice("error", `${name} was not loaded`, `${error.message.replace(/\.$/, "")}. The scene has not changed.`);
+      else notice("error", `${name} was not loaded`, `${message.replace(/\.$/, "")}. The scene has not changed.`);
     }
   }
 }

@@ -34,7 +34,7 @@ def installed(tmp_path: Path) -> Path:
     with tarfile.open(archive) as packed:
         packed.extractall(modules, filter="data")
     (modules / "package").rename(modules / "voxrt")
-    (modules / "three").symlink_to(ROOT / "build" / "web" / "npm" / "three-0.187.0")
+    (modules / "three").symlink_to(ROOT / "web" / "node_modules" / "three")
     return tmp_path
 
 

@@ -131,7 +131,7 @@ def test_every_control_has_a_name_and_keys_reach_it(browser: Browser) -> None:
 
 @pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
 def test_axe_finds_no_fault(browser: Browser, dark: bool) -> None:
-    source = ROOT / "build" / "web" / "npm" / "axe-core-4.14.1" / "axe.min.js"
+    source = ROOT / "web" / "node_modules" / "axe-core" / "axe.min.js"
     if not source.exists():
         pytest.skip("axe-core is not here: make site")
     browser.theme(dark=dark)

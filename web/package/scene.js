@@ -5,18 +5,37 @@
 //
 // Each visible mesh becomes an object, in the order of the scene graph; positions are those of the moment, with morph
 // targets and skins applied. Textures that are in memory and vertex colours give triangles an appearance; a plain
-// material counts by its colour. What else materials have is said in `warnings`.
+// material counts by its colour. `warnings` name what else materials have.
 
-const PAINTED = Symbol("painted"); // in place of the material of a triangle with an appearance
-const DEFAULT = { name: "default", colour: [200, 200, 200], authored: false };
+import { appearanceOfThree, colourOf } from "./three_looks.js";
+import { isDeformed, joined, PAINTED } from "./triangles.js";
+import { Warnings } from "./warnings.js";
 
-// How a file differs from a scene graph. groupOf(mesh): what makes meshes one object; nameOf(mesh, group);
-// materialOf(material): {key, name, order, colour}, where colour is sRGB and absent for that of the material.
-// appearanceOf(material, geometry, warn): null, or {entry, uvOf, colourOf}: an entry of a surface (voxrt.js), the same
-// object for the same look; uvOf(vertex, out) and colourOf(vertex, out) set two and four numbers, or are null.
-// isLeftOut(material): whether it is fully transparent. normalsOf(mesh): an attribute with the author's normals, or null.
-const PLAIN = {
-  normalsOf: (mesh) => (isDeformed(mesh) ? null : mesh.geometry.getAttribute("normal")),
+export { colours } from "./three_looks.js";
+
+/** @typedef {import("./three_looks.js").Attribute} Attribute */
+/** @typedef {import("./three_looks.js").Look} Look */
+/** @typedef {import("./three_looks.js").Setter} Setter */
+
+/** @import { BufferGeometry, InstancedMesh, Material as ThreeMaterial, Mesh as ThreeMesh, Object3D } from "three" */
+/** @import { Joined } from "./triangles.js" */
+/** @import { Mesh, Scene, SceneObject, Triple, Warning } from "./scene_format.js" */
+/** @import { Voxrt } from "./voxrt.js" @import { Warn } from "./warnings.js" */
+
+/** A material of the scene; those of equal keys are one, and `order` sorts them. `colour` (sRGB) replaces that of
+ * the material of three.js. @typedef {{ key: unknown, name: string, order?: number, colour?: Triple, mirror?:
+ * boolean, authored?: boolean }} Described */
+
+/** How a file differs from a scene graph. `groupOf`: what makes meshes one object; `materialOf`: null for the
+ * default material; `appearanceOf`: null where the colour of the material is uniform; `isLeftOut`: whether a
+ * material is fully transparent; `normalsOf`: the author's normals, for baked light. @typedef {{ groupOf: (mesh:
+ * ThreeMesh) => Object3D, nameOf: (mesh: ThreeMesh, group: Object3D) => string, materialOf: (material:
+ * ThreeMaterial) => Described | null | undefined, appearanceOf: (material: ThreeMaterial, geometry: BufferGeometry,
+ * warn: Warn) => Look | null, isLeftOut: (material: ThreeMaterial) => boolean, normalsOf: (mesh: ThreeMesh) =>
+ * Attribute | null }} Rules */
+
+/** @type {Rules} */ const PLAIN = {
+  normalsOf: (mesh) => (isDeformed(mesh) ? null : (mesh.geometry.getAttribute("normal") ?? null)),
   appearanceOf: appearanceOfThree,
   isLeftOut: () => false,
   groupOf: (mesh) => mesh,
@@ -24,231 +43,122 @@ const PLAIN = {
   materialOf: (material) => (material ? { key: material, name: material.name || "material" } : null),
 };
 
+const DEFAULT = { name: "default", colour: [200, 200, 200], authored: false };
+
+/** The visible meshes below an object of three.js, at this moment. @param {Object3D} root @param {Voxrt} voxrt
+ * @param {Partial<Rules>} [rules] @returns {Scene & { warnings: Warning[] }} */
 export function sceneOf(root, voxrt, rules = {}) {
-  const { groupOf, nameOf, materialOf, appearanceOf, isLeftOut, normalsOf } = { ...PLAIN, ...rules };
+  const all = { ...PLAIN, ...rules };
+  const warnings = new Warnings();
   root.updateMatrixWorld?.(true);
-  const warnings = new Map();
-  const warn = (kind, message, count = 1) => {
-    if (count) warnings.set(message, { kind, message, count: (warnings.get(message)?.count ?? 0) + count });
-  };
-  const groups = new Map();
-  visit(root, (mesh) => {
-    if (mesh.isPoints || mesh.isLine) warn("no-area", `${mesh.isPoints ? "points" : "lines"} were left out: they have no area to voxelize`);
-    if (!mesh.isMesh || !mesh.geometry?.getAttribute("position")) return;
+  const table = new Materials(all, voxrt);
+  /** @type {Joined[]} */ const meshes = [];
+  /** @type {SceneObject[]} */ const objects = [];
+  /** @type {Map<string, number>} the mesh, by what parts that do not deform show; -1 for no triangles */
+  const known = new Map();
+  for (const [group, parts] of groupsBelow(root, all, warnings.warn)) {
+    const look = parts.some(isDeformed) ? null : lookOf(parts);
+    let mesh = look === null ? undefined : known.get(look);
+    if (mesh === undefined) {
+      const made = joined(parts, all, (material) => table.keyOf(material), warnings.warn);
+      mesh = made.triangles.length ? meshes.push(made) - 1 : -1;
+      if (look !== null) known.set(look, mesh);
+    }
+    if (mesh < 0) continue;
+    parts[0].updateMatrixWorld?.();
+    const placed = placesOf(parts[0]);
+    for (const [i, matrix] of placed.entries()) {
+      const name = all.nameOf(parts[0], group) + (placed.length > 1 ? ` [${i}]` : "");
+      objects.push({ name, mesh, transform: rows(matrix) });
+    }
+  }
+  const numbered = meshes.map(({ keys, ...mesh }) => ({ ...mesh, materials: table.idsOf(keys) }));
+  const bare = table.defaultId();
+  const count = numbered.reduce((sum, { materials }) => sum + materials.filter((id) => id === bare).length, 0);
+  if (bare !== undefined) warnings.warn("default-material", "faces without a material got the default one", count);
+  return { materials: table.list(), meshes: numbered, objects, warnings: warnings.list() };
+}
+
+/** The materials in use, by their keys. */
+class Materials {
+  /** @type {Map<unknown, Described & { order: number, colour: Triple }>} */ #known = new Map();
+
+  /** @param {Rules} rules @param {Voxrt} voxrt */ constructor(rules, voxrt) {
+    this.rules = rules;
+    this.voxrt = voxrt;
+  }
+
+  /** @param {ThreeMaterial} material */ keyOf(material) {
+    const found = this.rules.materialOf(material) ?? { ...DEFAULT, key: DEFAULT, order: Infinity };
+    const { key, order = this.#known.size } = found;
+    if (!this.#known.has(key))
+      this.#known.set(key, { ...found, order, colour: found.colour ?? colourOf(material, this.voxrt) });
+    return key;
+  }
+
+  #ordered() {
+    return [...this.#known].sort(([, a], [, b]) => a.order - b.order);
+  }
+
+  #ids() {
+    return new Map(this.#ordered().map(([key], i) => [key, i + 1]));
+  }
+
+  /** The id of each triangle's key, 0 for those with an appearance. @param {unknown[]} keys */
+  idsOf(keys) {
+    const ids = this.#ids();
+    return Uint8Array.from(keys, (key) => (key === PAINTED ? 0 : (ids.get(key) ?? 0)));
+  }
+
+  defaultId() {
+    return this.#ids().get(DEFAULT);
+  }
+
+  list() {
+    return this.#ordered().map(([, one]) => {
+      const { name, colour, mirror = false, authored = true } = one;
+      return { name, colour, mirror, authored };
+    });
+  }
+}
+
+/** The visible meshes, by what makes them one object. @param {Object3D} root @param {Rules} rules @param {Warn} warn */
+function groupsBelow(root, { groupOf }, warn) {
+  /** @type {Map<Object3D, ThreeMesh[]>} */ const groups = new Map();
+  visit(root, (object) => {
+    const kind = "isPoints" in object ? "points" : "isLine" in object ? "lines" : null;
+    if (kind) warn("no-area", `${kind} were left out: they have no area to voxelize`);
+    if (!("isMesh" in object)) return;
+    const mesh = /** @type {ThreeMesh} */ (object);
+    if (!mesh.geometry?.getAttribute("position")) return;
     const key = groupOf(mesh);
     groups.set(key, [...(groups.get(key) ?? []), mesh]);
   });
-  const table = new Map(); // key -> {name, colour, order, ...}
-  const use = (material) => {
-    const found = materialOf(material) ?? { ...DEFAULT, key: DEFAULT, order: Infinity };
-    if (!table.has(found.key)) table.set(found.key, { order: table.size, ...found, colour: found.colour ?? colourOf(material, voxrt) });
-    return found.key;
-  };
-  const meshes = [];
-  const objects = [];
-  const known = new Map(); // what parts that do not deform show -> mesh
-  for (const [group, parts] of groups) {
-    const look = parts.some(isDeformed) ? null : parts.map(({ geometry, material }) => [geometry.id, [material].flat().map((one) => one?.id)].join()).join(";");
-    if (!known.has(look)) {
-      const made = joined(parts, { use, warn, appearanceOf, isLeftOut, normalsOf });
-      known.set(look, made.triangles.length ? meshes.push(made) - 1 : -1);
-    }
-    const mesh = known.get(look);
-    known.delete(null);
-    if (mesh < 0) continue;
-    parts[0].updateMatrixWorld?.();
-    const placed = parts[0].isInstancedMesh
-      ? Array.from({ length: parts[0].count }, (_, i) => product(parts[0].matrixWorld.elements, parts[0].instanceMatrix.array.subarray(16 * i, 16 * i + 16)))
-      : [parts[0].matrixWorld.elements];
-    placed.forEach((matrix, i) => objects.push({ name: nameOf(parts[0], group) + (placed.length > 1 ? ` [${i}]` : ""), mesh, transform: rows(matrix) }));
-  }
-  const ordered = [...table].sort(([, a], [, b]) => a.order - b.order);
-  const ids = new Map(ordered.map(([key], i) => [key, i + 1]));
-  for (const mesh of meshes) {
-    mesh.materials = Uint8Array.from(mesh.keys, (key) => (key === PAINTED ? 0 : ids.get(key)));
-    delete mesh.keys;
-  }
-  const bare = ids.get(DEFAULT);
-  if (bare !== undefined) warn("default-material", "faces without a material got the default one", meshes.reduce((sum, mesh) => sum + mesh.materials.filter((id) => id === bare).length, 0));
-  const materials = ordered.map(([, { name, colour, mirror = false, authored = true }]) => ({ name, colour, mirror, authored }));
-  return { materials, meshes, objects, warnings: [...warnings.values()] };
+  return groups;
 }
 
-function visit(object, see) {
+/** @param {Object3D} object @param {(object: Object3D) => void} see */ function visit(object, see) {
   if (!object.visible) return;
   see(object);
   for (const child of object.children) visit(child, see);
 }
 
-// Several meshes of one place as one: positions, triangles, the material of each triangle, and their surface.
-function joined(parts, { use, warn, appearanceOf, isLeftOut, normalsOf }) {
-  const [positions, triangles, keys, painted, given] = [[], [], [], [], []];
-  let first = 0;
-  for (const mesh of parts) {
-    const { geometry } = mesh;
-    const place = positionsOf(mesh);
-    const count = place.length / 3;
-    const corners = geometry.index ? geometry.index.array.subarray(0, geometry.index.count) : Uint32Array.from({ length: count }, (_, i) => i);
-    const whole = corners.length - (corners.length % 3);
-    if (whole < corners.length) warn("incomplete-triangle", "corners after the last whole triangle of a primitive were left out");
-    const several = Array.isArray(mesh.material) ? mesh.material : null;
-    const runs = several && geometry.groups.length
-      ? geometry.groups.map(({ start, count: length, materialIndex }) => [start, Math.min(start + length, whole), several[materialIndex]])
-      : [[0, whole, several ? several[0] : mesh.material]];
-    for (const [start, end, material] of runs) {
-      if (end <= start) continue;
-      const look = appearanceOf(material, geometry, warn);
-      if (!look && isLeftOut(material)) {
-        warn("transparent", "fully transparent faces were left out", (end - start) / 3);
-        continue;
-      }
-      let plain = null;
-      const covers = (at) => look && (!look.covers || look.covers(corners[at]) || look.covers(corners[at + 1]) || look.covers(corners[at + 2]));
-      for (let i = start; i < end; i += 3) {
-        if (covers(i)) painted.push([triangles.length / 3, look, corners, i]);
-        keys.push(covers(i) ? PAINTED : (plain ??= use(material)));
-        triangles.push(corners[i] + first, corners[i + 1] + first, corners[i + 2] + first);
-      }
-    }
-    positions.push(place);
-    const normals = normalsOf(mesh);
-    if (normals) given.push([first, normals]);
-    first += count;
-  }
-  const all = new Float64Array(3 * first);
-  positions.reduce((at, part) => (all.set(part, at), at + part.length), 0);
-  const rows = Int32Array.from(triangles);
-  return {
-    positions: all, triangles: rows, keys, ...(painted.length && { surface: surfaceOf(painted, keys.length) }),
-    ...(given.length && { normals: { directions: joinedNormals(given, first), rows } }),
-  };
+/** @param {ThreeMesh[]} parts */ const lookOf = (parts) =>
+  parts.map(({ geometry, material }) => [geometry.id, [material].flat().map((one) => one?.id)].join()).join(";");
+
+/** The matrices of an object, several where it has instances. @param {ThreeMesh} mesh @returns {ArrayLike<number>[]} */
+function placesOf(mesh) {
+  const world = mesh.matrixWorld.elements;
+  if (!("isInstancedMesh" in mesh)) return [world];
+  const { count, instanceMatrix } = /** @type {InstancedMesh} */ (mesh);
+  return Array.from({ length: count }, (_, i) => product(world, instanceMatrix.array.subarray(16 * i, 16 * i + 16)));
 }
 
-// `given`: [the first vertex, an attribute] each; zeros elsewhere.
-function joinedNormals(given, count) {
-  const single = given.every(([, { array }]) => array instanceof Float32Array);
-  const all = new (single ? Float32Array : Float64Array)(3 * count);
-  for (const [first, attribute] of given)
-    for (let i = 0, at = 3 * first; i < attribute.count; i++, at += 3) {
-      all[at] = attribute.getX(i);
-      all[at + 1] = attribute.getY(i);
-      all[at + 2] = attribute.getZ(i);
-    }
-  return all;
-}
-
-function surfaceOf(painted, count) {
-  const entries = [...new Set(painted.map(([, look]) => look.entry))];
-  const numbers = new Map(entries.map((entry, i) => [entry, i]));
-  const rows = new Int32Array(count).fill(-1);
-  const uv = new Float64Array(6 * count);
-  const colours = new Float32Array(12 * count).fill(1);
-  for (const [triangle, { entry, uvOf, colourOf }, corners, at] of painted) {
-    rows[triangle] = numbers.get(entry);
-    for (let corner = 0; corner < 3; corner++) {
-      uvOf?.(corners[at + corner], uv.subarray(6 * triangle + 2 * corner));
-      colourOf?.(corners[at + corner], colours.subarray(12 * triangle + 4 * corner));
-    }
-  }
-  return { entries, rows, uv, colours };
-}
-
-const isDeformed = (mesh) => mesh.isSkinnedMesh || (mesh.morphTargetInfluences?.some((weight) => weight !== 0) ?? false);
-
-function positionsOf(mesh) {
-  const attribute = mesh.geometry.getAttribute("position");
-  const deformed = isDeformed(mesh);
-  if (!deformed && !attribute.isInterleavedBufferAttribute && !attribute.normalized && attribute.itemSize === 3)
-    return attribute.array.subarray(0, 3 * attribute.count);
-  const positions = new Float64Array(3 * attribute.count);
-  if (!deformed) {
-    for (let i = 0; i < attribute.count; i++) positions.set([attribute.getX(i), attribute.getY(i), attribute.getZ(i)], 3 * i);
-    return positions;
-  }
-  if (mesh.isSkinnedMesh) mesh.skeleton.update();
-  const point = mesh.position.clone();
-  for (let i = 0; i < attribute.count; i++) mesh.getVertexPosition(i, point).toArray(positions, 3 * i);
-  return positions;
-}
-
-function colourOf(material, voxrt) {
-  const { r, g, b } = material.color ?? { r: 1, g: 1, b: 1 };
-  return [r, g, b].map((channel) => voxrt.srgb(channel));
-}
-
-const WRAPS = { 1000: "repeat", 1001: "clamp", 1002: "mirror" };
-const NEAREST = 1003;
-
-// The look of a material of three.js, apart from alpha.
-const looks = new WeakMap();
-function appearanceOfThree(material, geometry, warn) {
-  const [colour, uv] = [material?.vertexColors && geometry.getAttribute("color"), geometry.getAttribute("uv")];
-  const image = material?.map && uv ? pixelsOf(material.map, warn) : null;
-  if (!colour && !image) return null;
-  if (!looks.has(material)) looks.set(material, {});
-  const { r, g, b } = material.color ?? { r: 1, g: 1, b: 1 };
-  const known = looks.get(material);
-  const kind = image ? "textured" : "coloured";
-  known[kind] ??= {
-    name: material.name || "material", factor: [r, g, b, 1],
-    texture: image && { image, wrap: [WRAPS[material.map.wrapS], WRAPS[material.map.wrapT]], nearest: material.map.magFilter === NEAREST },
-  };
-  return { entry: known[kind], uvOf: image && coordinatesOf(uv, material.map), colourOf: colour ? colours(colour) : null };
-}
-
-// Sets u and v, which the texture's offset, repeat and rotation move.
-function coordinatesOf(uv, texture) {
-  texture.updateMatrix();
-  const [a, b, , c, d, , e, f] = texture.matrix.elements;
-  return (vertex, out) => {
-    const [u, v] = [uv.getX(vertex), uv.getY(vertex)];
-    out[0] = a * u + c * v + e;
-    out[1] = b * u + d * v + f;
-  };
-}
-
-// Sets linear colour and alpha from an attribute.
-export const colours = (attribute) => (vertex, out) => {
-  out[0] = attribute.getX(vertex);
-  out[1] = attribute.getY(vertex);
-  out[2] = attribute.getZ(vertex);
-  out[3] = attribute.itemSize === 4 ? attribute.getW(vertex) : 1;
-};
-
-// The pixels of a texture, row 0 at v = 0; null where they cannot be read.
-const read = new WeakMap();
-function pixelsOf(texture, warn) {
-  const { image } = texture;
-  if (image && !read.has(image)) read.set(image, pixelsOfImage(image));
-  const found = image ? read.get(image) : null;
-  if (!found) warn("texture", "a texture cannot be read here; its material took its plain colour");
-  return found && texture.flipY ? turned(found) : found;
-}
-
-function pixelsOfImage(image) {
-  const { data, width, height } = image;
-  if (data?.length === 4 * width * height && data.BYTES_PER_ELEMENT === 1) return { width, height, pixels: data };
-  if (typeof OffscreenCanvas === "undefined" || !(image instanceof ImageBitmap)) return null;
-  const context = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true });
-  context.drawImage(image, 0, 0);
-  return { width, height, pixels: context.getImageData(0, 0, width, height).data };
-}
-
-const upside = new WeakMap();
-function turned(image) {
-  if (!upside.has(image)) {
-    const { width, height, pixels } = image;
-    const made = new Uint8Array(pixels.length);
-    for (let row = 0; row < height; row++) made.set(pixels.subarray(4 * width * row, 4 * width * (row + 1)), 4 * width * (height - 1 - row));
-    upside.set(image, { width, height, pixels: made });
-  }
-  return upside.get(image);
-}
-
-// A matrix of three.js (columns) as 3 rows of 4.
+/** A matrix of three.js (columns) as 3 rows of 4. @param {ArrayLike<number>} m */
 const rows = (m) => [m[0], m[4], m[8], m[12], m[1], m[5], m[9], m[13], m[2], m[6], m[10], m[14]];
 
-const product = (a, b) => Array.from({ length: 16 }, (_, at) => {
-  const [column, row] = [at >> 2, at & 3];
-  return a[row] * b[4 * column] + a[row + 4] * b[4 * column + 1] + a[row + 8] * b[4 * column + 2] + a[row + 12] * b[4 * column + 3];
-});
+/** @param {ArrayLike<number>} a @param {ArrayLike<number>} b */ const product = (a, b) =>
+  Array.from({ length: 16 }, (_, at) => {
+    const [column, row] = [at >> 2, at & 3];
+    return [0, 1, 2, 3].reduce((sum, i) => sum + a[row + 4 * i] * b[4 * column + i], 0);
+  });

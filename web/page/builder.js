@@ -1,32 +1,44 @@
 // Builds memories of dropped files and examples in a worker. A new build ends the one before.
 
 import { Hand } from "./hand.js";
+/** @import { DroppedFile } from "./folder.js" @import { Memory } from "./memory.js" */
+/** @import { Options } from "./voxrt/voxrt.js" @import { WorkerCalls } from "./worker.js" */
 
 export class Builder {
-  constructor(module) {
+  #source = 0;
+  #busy = false;
+  /** @type {DroppedFile[] | null} */ #files = null;
+
+  /** @param {WebAssembly.Module} module */ constructor(module) {
     this.module = module;
-    this.source = 0;
-    this.ready = new Hand().start(module);
+    this.ready = this.#start();
   }
 
-  // files: [{name, bytes}]. Resolves with what worker.js builds; rejects with the reason, or "cancelled".
+  async #start() {
+    /** @type {Hand<WorkerCalls>} */ const hand = new Hand("./worker.js");
+    await hand.call("start", { module: this.module });
+    return hand;
+  }
+
+  /** Rejects with the reason, or "cancelled". @param {DroppedFile[]} files @param {Required<Omit<Options,
+   * "colours">>} options @param {(stage: string) => void} onStage */
   async build(files, options, onStage) {
-    if (this.busy) this.cancel();
-    if (files !== this.files) this.source++;
-    this.files = files;
+    if (this.#busy) this.cancel();
+    if (files !== this.#files) this.#source++;
+    this.#files = files;
     const hand = await this.ready;
-    this.busy = true;
+    this.#busy = true;
     try {
-      return await hand.call("build", { files, source: this.source, ...options }, onStage);
+      return await hand.call("build", { files, source: this.#source, ...options }, onStage);
     } finally {
-      if (hand === (await this.ready)) this.busy = false;
+      if (hand === (await this.ready)) this.#busy = false;
     }
   }
 
   cancel() {
     const { ready } = this;
-    this.ready = new Hand().start(this.module);
-    this.busy = false;
+    this.ready = this.#start();
+    this.#busy = false;
     ready.then((hand) => hand.stop());
   }
 }

@@ -2,40 +2,44 @@
 
 import { $, isPressed, pressed } from "./elements.js";
 import { DAYLIGHT } from "./voxrt/voxrt.js";
+/** @import { Daylight } from "./voxrt/voxrt.js" */
 
-const FIELDS = ["sun-x", "sun-y", "sun-z", "sky", "samples"];
+const FIELDS = /** @type {const} */ (["sun-x", "sun-y", "sun-z", "sky", "samples"]);
+const SOON = 300; // milliseconds
 
-// `onChange` is called when a new memory has to be built.
 export class DaylightControl {
-  constructor(onChange) {
+  /** @param {() => void} onChange called when a new memory has to be built */ constructor(onChange) {
     this.set(null);
-    let soon = null;
-    for (const field of FIELDS) $(field).oninput = () => {
-      clearTimeout(soon);
-      if (this.on && FIELDS.every((one) => $(one).validity.valid)) soon = setTimeout(onChange, 300);
-    };
+    /** @type {ReturnType<typeof setTimeout> | undefined} */ let soon;
+    for (const field of FIELDS)
+      $(field).oninput = () => {
+        clearTimeout(soon);
+        if (this.on && FIELDS.every((one) => $(one).validity.valid)) soon = setTimeout(onChange, SOON);
+      };
     $("bake").onclick = () => {
-      this.show(!this.on);
+      this.#show(!this.on);
       onChange();
     };
   }
 
-  get on() { return isPressed($("bake")); }
+  get on() {
+    return isPressed($("bake"));
+  }
 
-  // As of Voxrt.voxelize.
   get options() {
     if (!this.on) return null;
     const [x, y, z, sky, samples] = FIELDS.map((field) => $(field).valueAsNumber);
     return { sun: [x, y, z], sky: [sky, sky, sky], samples };
   }
 
-  set(options) {
+  /** @param {Daylight | null} options */ set(options) {
     const { sun, sky, samples } = options ?? DAYLIGHT;
-    [...sun, sky[0], samples].forEach((value, i) => { $(FIELDS[i]).value = value; });
-    this.show(options !== null);
+    const values = [...sun, sky[0], samples];
+    for (const [i, field] of FIELDS.entries()) $(field).value = String(values[i]);
+    this.#show(options !== null);
   }
 
-  show(on) {
+  /** @param {boolean} on */ #show(on) {
     pressed($("bake"), on);
     $("daylight").hidden = !on;
   }

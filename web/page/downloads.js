@@ -1,63 +1,77 @@
 // What the page hands out: the memory as .mem, its manifest, a link to the scene and the view.
 
 import { crc32 } from "./crc32.js";
-import { memBytes } from "./mem.js";
+import { memBytes } from "./memory.js";
+import { DIALECT, hex } from "./voxrt/words.js";
+/** @import { Pose } from "./camera.js" @import { Shown } from "./memory.js" */
+/** @import { Daylight } from "./voxrt/voxrt.js" */
 
-export function save(bytes, name, type = "application/octet-stream") {
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([bytes], { type }));
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
-}
-
-// The manifest of a memory, as voxrt build writes it (export/manifest.py): its own, if it came with one.
-export function manifestOf({ name, file, words, depth, materials, grid, objects, warnings, seconds, fill, lighting, baked, manifest }, voxels) {
-  const crc = crc32(memBytes(words)).toString(16).toUpperCase().padStart(8, "0");
-  if (manifest) return { ...manifest, crc32: crc };
-  const [x, y, z] = grid?.origin ?? [0, 0, 0];
-  const size = grid?.voxelSize;
+/** The manifest as voxrt build writes it (export/manifest.py), or that of the memory. @param {Shown} memory */
+export function manifestOf(memory) {
+  const { name, file, words, depth, materials, grid, objects, warnings } = memory;
+  const { seconds, fill, lighting, baked, voxels } = memory;
+  const crc = hex(crc32(memBytes(words)));
+  if (memory.manifest) return { ...memory.manifest, crc32: crc };
+  const { wordsBefore: _before, words: _words, ...light } = baked ?? {};
   return {
-    schema: 1, name, words: words.length, blocks: (words.length - 1) / 8, depth, dialect: "report",
+    schema: 1,
+    name,
+    words: words.length,
+    blocks: (words.length - 1) / 8,
+    depth,
+    dialect: DIALECT,
     crc32: crc,
     voxels: voxels.reduce((sum, count, id) => (id ? sum + count : 0), 0),
-    materials: materials.map((material, id) => ({
-      id, name: material.name, colour: material.colour, mirror: material.mirror, authored: material.authored, voxels: voxels[id],
-    })),
-    world: grid && { origin: grid.origin, voxel_size: size, matrix: [[size, 0, 0, x], [0, size, 0, y], [0, 0, size, z], [0, 0, 0, 1]] },
+    materials: materials.map((material, id) => ({ id, ...material, voxels: voxels[id] })),
+    world: grid && { origin: grid.origin, voxel_size: grid.voxelSize, matrix: matrixOf(grid) },
     objects: objects.map((object) => ({ source: "mesh", moved: [0, 0, 0], grown: [0, 0, 0], ...object })),
-    warnings, seconds: { build: seconds ?? 0 },
-    source: { file, settings: { fill: fill ?? null } }, view: null, lighting: lighting ?? null, animation: null,
-    baked: baked ? { sun: baked.sun, sky: baked.sky, samples: baked.samples, voxels: baked.voxels, colours: baked.colours, words_before: baked.wordsBefore, words: baked.words } : null,
+    warnings,
+    seconds: { build: seconds ?? 0 },
+    source: { file, settings: { fill: fill ?? null } },
+    view: null,
+    lighting: lighting ?? null,
+    animation: null,
+    baked: baked ? { ...light, words_before: baked.wordsBefore, words: baked.words } : null,
   };
 }
+
+/** From voxels to the scene. @param {NonNullable<Shown["grid"]>} grid */
+const matrixOf = ({ origin, voxelSize }) =>
+  [...origin, 1].map((place, row) => [0, 1, 2].map((at) => (at === row ? voxelSize : 0)).concat(place));
 
 const NUMBERS = /^-?\d+(\.\d+)?$/;
 
-// The part of an address that carries a scene and its view, and back.
+/** The part of an address that carries a scene and its view. @param {{ example: string | null, depth: number, bake:
+ * Daylight | null, words: number | null, view: Pose }} link */
 export function linkOf({ example, depth, bake, words, view }) {
   const { eye, yaw, pitch, fov, distance } = view;
   const camera = [...eye, yaw, pitch, fov, distance].map((value) => Number(value.toFixed(3))).join(",");
-  const light = bake ? { bake: [...bake.sun, bake.sky[0], bake.samples].join(",") } : {};
-  return `#${new URLSearchParams({ ...(example ? { scene: example } : {}), depth, ...light, ...(words ? { words } : {}), camera })}`;
+  return `#${new URLSearchParams({
+    ...(example ? { scene: example } : {}),
+    depth: String(depth),
+    ...(bake ? { bake: [...bake.sun, bake.sky[0], bake.samples].join(",") } : {}),
+    ...(words ? { words: String(words) } : {}),
+    camera,
+  })}`;
 }
 
+/** What such a part of an address says; null for what it does not. @param {string} hash */
 export function readLink(hash) {
-  const given = new URLSearchParams(hash.slice(1));
-  const read = (name, count) => {
-    const parts = (given.get(name) ?? "").split(",");
+  const fields = new URLSearchParams(hash.slice(1));
+  /** @param {string} name @param {number} count */ const read = (name, count) => {
+    const parts = (fields.get(name) ?? "").split(",");
     return parts.length === count && parts.every((part) => NUMBERS.test(part)) ? parts.map(Number) : null;
   };
-  const numbers = read("camera", 7);
-  const words = Number(given.get("words"));
-  const light = read("bake", 5);
-  const samples = light?.[4];
-  const depth = Number(given.get("depth"));
+  const words = Number(fields.get("words"));
+  const depth = Number(fields.get("depth"));
+  const [x, y, z, level = -1, samples = 0] = read("bake", 5) ?? [];
+  const isBaked = level >= 0 && level <= 16 && Number.isInteger(samples) && samples >= 1 && samples <= 4096;
+  const [eyeX, eyeY, eyeZ, yaw, pitch, fov, distance] = read("camera", 7) ?? [];
   return {
-    example: given.get("scene"), depth: Number.isInteger(depth) && depth >= 1 && depth <= 12 ? depth : null,
-    bake: light && light[3] >= 0 && light[3] <= 16 && Number.isInteger(samples) && samples >= 1 && samples <= 4096
-      ? { sun: light.slice(0, 3), sky: [light[3], light[3], light[3]], samples } : null,
+    example: fields.get("scene"),
+    depth: Number.isInteger(depth) && depth >= 1 && depth <= 12 ? depth : null,
+    bake: isBaked ? { sun: [x, y, z], sky: [level, level, level], samples } : null,
     words: Number.isInteger(words) && words >= 1 && words < 2 ** 32 ? words : null,
-    camera: numbers && { eye: numbers.slice(0, 3), yaw: numbers[3], pitch: numbers[4], fov: numbers[5], distance: numbers[6] },
+    camera: distance !== undefined ? { eye: [eyeX, eyeY, eyeZ], yaw, pitch, fov, distance } : null,
   };
 }

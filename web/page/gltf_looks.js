@@ -1,111 +1,141 @@
 // Textures and vertex colours of glTF files: what voxrt build reads of them, by the file's own numbers.
 
-import { colours } from "./voxrt/scene.js";
 import { decodeImage } from "./images.js";
+import { colours } from "./voxrt/scene.js";
+import { Warnings } from "./voxrt/warnings.js";
+/** @import { BufferGeometry, Material, Object3D, Texture } from "three" */
+/** @import { GLTFParser } from "three/addons/loaders/GLTFLoader.js" @import { Folder } from "./folder.js" */
+/** @import { Look, Setter } from "./voxrt/scene.js" @import { Appearance, Image, Wrap } from "./voxrt/voxrt.js" */
 
-const WRAPS = { 10497: "repeat", 33648: "mirror", 33071: "clamp" };
+/** @typedef {{ index: number, texCoord?: number, extensions?: { KHR_texture_transform?: Moved } }} TextureInfo */
+/** @typedef {{ texCoord?: number, offset?: number[], scale?: number[], rotation?: number }} Moved */
+
+/** @typedef {any} Gltf the file's own JSON */
+/** @typedef {{ nodes?: number, materials?: number, textures?: number }} Association */
+
+/** What is used of GLTFLoader's parser. @typedef {{ json: Gltf, associations: Map<Material | Object3D | Texture,
+ * Association>, getDependency: (type: "bufferView", index: number) => Promise<ArrayBuffer> }} GltfParser */
+
+/** @type {Record<number, Wrap>} */ const WRAPS = { 10497: "repeat", 33648: "mirror", 33071: "clamp" };
 const NEAREST = 9728;
 const BLEND_CUTOFF = 0.5;
 const GLOSSY = "KHR_materials_pbrSpecularGlossiness";
+/** @type {Record<string, string>} */
 const UNREADABLE = { KHR_texture_basisu: "KTX2", MSFT_texture_dds: "DDS", EXT_texture_avif: "AVIF" };
 
 export class GltfLooks {
-  // The plugins of three.js' loader that would decode images; in their place come empty textures.
+  /** The plugins of three.js' loader that would decode images; in their place come empty textures. */
   static loaders = ["EXT_texture_webp", "EXT_texture_avif", "KHR_texture_basisu", "voxrt_textures"];
 
-  constructor(folder) {
+  warnings = new Warnings();
+  /** @type {Map<number, Appearance["texture"] | null>} by index */ #textures = new Map();
+  /** @type {Map<string, Appearance>} */ #entries = new Map();
+  /** @type {Gltf} */ #json = { materials: [], textures: [], images: [] };
+
+  /** @param {Folder} folder */ constructor(folder) {
     this.folder = folder;
-    this.warnings = new Map();
-    this.textures = new Map(); // index -> texture of voxrt.js, or null
-    this.entries = new Map();
   }
 
+  /** @param {GLTFParser} parser @param {number} index @param {Texture} texture */
   async placeholder(parser, index, texture) {
     parser.associations.set(texture, { textures: index });
     return texture;
   }
 
-  warn(kind, message, count = 1) {
-    this.warnings.set(message, { kind, message, count: (this.warnings.get(message)?.count ?? 0) + count });
-  }
-
-  // Decode the images that materials in use need.
+  /** Decode the images that materials in use need. @param {GltfParser} parser */
   async read(parser) {
-    this.json = parser.json;
-    this.parser = parser;
-    const used = new Set((this.json.meshes ?? []).flatMap(({ primitives }) => primitives.map(({ material }) => material)));
-    const images = new Map();
+    this.#json = parser.json;
+    /** @type {Gltf[]} */ const primitives = (this.#json.meshes ?? []).flatMap(
+      (/** @type {Gltf} */ mesh) => mesh.primitives,
+    );
+    /** @type {Set<number | undefined>} */ const used = new Set(primitives.map(({ material }) => material));
+    /** @type {Map<number, Image | null>} */ const images = new Map();
     for (const material of used) {
       const info = material === undefined ? null : this.properties(material).texture;
-      if (!info || this.textures.has(info.index)) continue;
-      this.textures.set(info.index, await this.texture(info.index, images));
+      if (!info || this.#textures.has(info.index)) continue;
+      this.#textures.set(info.index, await this.#texture(parser, info.index, images));
     }
   }
 
-  async texture(index, images) {
-    const texture = this.json.textures[index];
+  /** @param {GltfParser} parser @param {number} index @param {Map<number, Image | null>} images */
+  async #texture(parser, index, images) {
+    const texture = this.#json.textures[index];
     const source = texture.extensions?.EXT_texture_webp?.source ?? texture.source;
     const factor = "its materials took the colour of their factor";
     if (source === undefined) {
       const kind = Object.keys(UNREADABLE).find((name) => name in (texture.extensions ?? {}));
-      this.warn("texture", kind ? `textures[${index}] has only a ${UNREADABLE[kind]} image: ${factor}; convert its images to PNG or JPEG` : `textures[${index}] has no image: ${factor}`);
+      const advice = kind ? "; convert its images to PNG or JPEG" : "";
+      const image = kind ? `only a ${UNREADABLE[kind]} image` : "no image";
+      this.warnings.warn("texture", `textures[${index}] has ${image}: ${factor}${advice}`);
       return null;
     }
-    if (!images.has(source)) images.set(source, await this.image(source, factor));
+    if (!images.has(source)) images.set(source, await this.#image(parser, source, factor));
     const image = images.get(source);
-    const { wrapS = 10497, wrapT = 10497, magFilter } = this.json.samplers?.[texture.sampler] ?? {};
-    return image && { image, wrap: [WRAPS[wrapS], WRAPS[wrapT]], nearest: magFilter === NEAREST };
+    const { wrapS = 10497, wrapT = 10497, magFilter } = this.#json.samplers?.[texture.sampler ?? -1] ?? {};
+    const wrap = [wrapS, wrapT].map((code) => WRAPS[code] ?? "repeat");
+    return image ? { image, wrap, nearest: magFilter === NEAREST } : null;
   }
 
-  async image(index, factor) {
-    const { uri, bufferView } = this.json.images[index];
-    let bytes = null;
-    if (uri === undefined) bytes = await this.parser.getDependency("bufferView", bufferView);
+  /** @param {GltfParser} parser @param {number} index @param {string} factor what is shown instead */
+  async #image(parser, index, factor) {
+    const { uri, bufferView } = this.#json.images[index];
+    /** @type {ArrayBuffer | Uint8Array | undefined} */ let bytes;
+    if (uri === undefined) bytes = await parser.getDependency("bufferView", bufferView);
     else if (uri.startsWith("data:")) bytes = await (await fetch(uri)).arrayBuffer();
     else {
       bytes = this.folder.find(uri)?.bytes;
+      const absent = `images[${index}]: no image '${uri.slice(0, 60)}' in the asset's folder; ${factor}`;
       if (!bytes) {
-        this.warn("texture", `images[${index}]: no image '${uri.slice(0, 60)}' in the asset's folder; ${factor}`);
+        this.warnings.warn("texture", absent);
         return null;
       }
     }
     return decodeImage(new Uint8Array(bytes), `images[${index}]`);
   }
 
-  properties(index) {
-    const material = this.json.materials[index];
+  /** @param {number} index of a material */ properties(index) {
+    const material = this.#json.materials[index];
     const base = material.pbrMetallicRoughness ?? {};
     const glossy = material.extensions?.[GLOSSY];
-    const factor = (glossy ? glossy.diffuseFactor : base.baseColorFactor) ?? [1, 1, 1, 1];
+    /** @type {number[]} */ const factor = (glossy ? glossy.diffuseFactor : base.baseColorFactor) ?? [1, 1, 1, 1];
     const extras = material.extras ?? {};
+    /** @type {Record<string, number>} */ const cutoffs = {
+      MASK: material.alphaCutoff ?? 0.5,
+      BLEND: BLEND_CUTOFF,
+      OPAQUE: 0,
+    };
     return {
       name: extras.voxrt_material || material.name || `materials[${index}]`,
       factor: factor.map((part) => Math.min(Math.max(part, 0), 1)),
       texture: glossy ? glossy.diffuseTexture : base.baseColorTexture,
-      cutoff: { MASK: material.alphaCutoff ?? 0.5, BLEND: BLEND_CUTOFF }[material.alphaMode] ?? 0,
+      cutoff: cutoffs[material.alphaMode ?? "OPAQUE"] ?? 0,
       mirror: Boolean(extras.voxrt_reflect),
+      isNamed: Boolean(extras.voxrt_material),
     };
   }
 
-  isLeftOut(index) {
+  /** @param {number | undefined} index of a material */ isLeftOut(index) {
     if (index === undefined) return false;
     const { factor, cutoff } = this.properties(index);
     return factor[3] < cutoff;
   }
 
-  // The look of a primitive; null where its colour is uniform. `index`: of its material, undefined for none.
+  /** The look of a primitive; null where its colour is uniform. @param {number | undefined} index @param
+   * {BufferGeometry} geometry */
   appearance(index, geometry) {
-    const { name, factor, texture: info, cutoff, mirror } = index === undefined ? { name: "default", factor: [1, 1, 1, 1], cutoff: 0, mirror: false } : this.properties(index);
-    const colourOf = this.colours(geometry);
-    let uvOf = info && this.textures.get(info.index) ? this.coordinates(info, geometry) : null;
-    const texture = uvOf ? this.textures.get(info.index) : null;
+    const plain = { name: "default", factor: [1, 1, 1, 1], texture: undefined, cutoff: 0, mirror: false };
+    const { name, factor, texture: info, cutoff, mirror } = index === undefined ? plain : this.properties(index);
+    const colourOf = this.#colours(geometry);
+    const uvOf = info && this.#textures.get(info.index) ? this.#coordinates(info, geometry) : null;
+    const texture = (uvOf && info && this.#textures.get(info.index)) ?? null;
     if (!texture && !colourOf) return null;
     const key = `${index} ${texture === null}`;
-    if (!this.entries.has(key)) this.entries.set(key, { name, factor, texture, cutoff, mirror });
-    return { entry: this.entries.get(key), uvOf, colourOf };
+    const entry = this.#entries.get(key) ?? { name, factor, texture, cutoff, mirror };
+    this.#entries.set(key, entry);
+    return { entry, uvOf, colourOf };
   }
 
-  colours(geometry) {
+  /** @param {BufferGeometry} geometry @returns {Setter | null} */ #colours(geometry) {
     const attribute = geometry.getAttribute("color");
     if (!attribute) return null;
     const set = colours(attribute);
@@ -116,23 +146,31 @@ export class GltfLooks {
       numbers &&= one.every(Number.isFinite);
       white &&= one.every((part) => part >= 1);
     }
-    if (!numbers) this.warn("vertex-colour", "vertex colours that are not numbers were taken as black");
+    if (!numbers) this.warnings.warn("vertex-colour", "vertex colours that are not numbers were taken as black");
     if (white) return null;
     return (vertex, out) => {
       set(vertex, out);
-      for (let channel = 0; channel < 4; channel++) out[channel] = Number.isFinite(out[channel]) ? Math.min(Math.max(out[channel], 0), 1) : 0;
+      for (let channel = 0; channel < 4; channel++)
+        out[channel] = Number.isFinite(out[channel]) ? Math.min(Math.max(out[channel], 0), 1) : 0;
     };
   }
 
-  coordinates(info, geometry) {
+  /** @param {TextureInfo} info @param {BufferGeometry} geometry @returns {Setter | null} */
+  #coordinates(info, geometry) {
     const moved = info.extensions?.KHR_texture_transform;
     const number = moved?.texCoord ?? info.texCoord ?? 0;
     const attribute = geometry.getAttribute(number === 0 ? "uv" : number < 4 ? `uv${number}` : `texcoord_${number}`);
     if (!attribute) {
-      this.warn("texture", `primitives without the TEXCOORD_${number} that their texture needs took the colour of their factor`);
+      const name = `TEXCOORD_${number}`;
+      const problem = `primitives without the ${name} that their texture needs took the colour of their factor`;
+      this.warnings.warn("texture", problem);
       return null;
     }
-    if (!moved) return (vertex, out) => { out[0] = attribute.getX(vertex); out[1] = attribute.getY(vertex); };
+    if (!moved)
+      return (vertex, out) => {
+        out[0] = attribute.getX(vertex);
+        out[1] = attribute.getY(vertex);
+      };
     const { offset = [0, 0], scale = [1, 1], rotation = 0 } = moved;
     const [cos, sin] = [Math.cos(rotation), Math.sin(rotation)];
     return (vertex, out) => {

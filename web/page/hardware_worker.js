@@ -1,46 +1,60 @@
-// The verilated hardware off the page's thread, and the exact model beside it. Messages as of worker.js.
+// The verilated hardware off the page's thread, and the exact model beside it.
 
-import { answerWith, count } from "./worker_answers.js";
 import { Hardware } from "./voxrt/hardware.js";
 import { Voxrt } from "./voxrt/voxrt.js";
+import { answerWith, count } from "./worker_answers.js";
+/** @import { Rendered } from "./voxrt/hardware.js" @import { Camera, Look, Rows, Size } from "./voxrt/voxrt.js" */
 
-let voxrt, hardware;
-let onProgress = () => {};
+/** @typedef {Rendered & { seconds: number, wrong: number }} Compared `wrong`: pixels in which both differ */
 
-answerWith({
-  async start({ module }) {
-    [voxrt, hardware] = await Promise.all([
+const state = {
+  /** @type {{ voxrt: Voxrt, hardware: Hardware } | null} */ loaded: null,
+  onProgress: (/** @type {number} */ _pixels) => {},
+};
+
+const calls = {
+  /** @param {{ module: WebAssembly.Module }} job */ async start({ module }) {
+    const path = "voxrt/voxrt_hardware.wasm";
+    const [voxrt, hardware] = await Promise.all([
       Voxrt.load(module),
-      fetch("voxrt/voxrt_hardware.wasm").then((answer) => {
-        if (!answer.ok) throw new Error(`voxrt/voxrt_hardware.wasm: ${answer.status}`);
-        return Hardware.start(answer, (pixels) => onProgress(pixels));
+      fetch(path).then((answer) => {
+        if (!answer.ok) throw new Error(`${path}: ${answer.status}`);
+        return Hardware.start(answer, (pixels) => state.onProgress(pixels));
       }),
     ]);
+    state.loaded = { voxrt, hardware };
   },
 
-  // One frame by both. Answers the hardware's picture, what it took, and how many pixels differ in colour, material or
-  // face.
-  run({ words, depth, camera, size, look }, say) {
+  /** One frame by both. @param {{ words: Uint32Array, depth: number, camera: Camera, size: Size, look: Look }} job
+   * @param {(stage: { share: number }) => void} report */
+  run({ words, depth, camera, size, look }, report) {
+    if (!state.loaded) throw new Error("the worker has not started");
+    const { voxrt, hardware } = state.loaded;
     voxrt.setMemory(words, depth); // which checks the words
     const limit = hardware.wordLimit;
     if (words.length > limit) {
       const fitting = depth - voxrt.levelThatFits(limit);
-      throw new Error(`The memory has ${count(words.length)} words, and the configuration tiny holds ${count(limit)}: ${
-        fitting ? `choose ${count(2 ** fitting)}³ or less` : "choose another model"}`);
+      const advice = fitting ? `choose ${count(2 ** fitting)}³ or less` : "choose another model";
+      const problem = `The memory has ${count(words.length)} words, and the configuration tiny holds ${count(limit)}`;
+      throw new Error(`${problem}: ${advice}`);
     }
     hardware.setMemory(words, depth);
-    onProgress = (pixels) => say({ share: pixels / (size[0] * size[1]) });
+    state.onProgress = (pixels) => report({ share: pixels / (size[0] * size[1]) });
     const start = performance.now();
     const made = hardware.render(camera, size, look);
     const seconds = (performance.now() - start) / 1000;
     voxrt.shade(look);
     return { ...made, seconds, wrong: differing(made, voxrt.render(camera, size)) };
   },
-});
+};
+/** @typedef {typeof calls} HardwareCalls */
+answerWith(calls);
 
+/** How many pixels differ in colour, material or face. @param {Rendered} one @param {Rows} other */
 function differing(one, other) {
-  let wrong = 0;
-  for (let i = 0; i < one.material.length; i++)
-    if (one.material[i] !== other.material[i] || one.face[i] !== other.face[i] || [0, 1, 2].some((channel) => one.colour[3 * i + channel] !== other.colour[3 * i + channel])) wrong++;
-  return wrong;
+  const isWrong = (/** @type {number} */ _material, /** @type {number} */ i) =>
+    one.material[i] !== other.material[i] ||
+    one.face[i] !== other.face[i] ||
+    [0, 1, 2].some((channel) => one.colour[3 * i + channel] !== other.colour[3 * i + channel]);
+  return one.material.filter(isWrong).length;
 }

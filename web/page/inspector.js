@@ -1,85 +1,101 @@
 // The way of one pixel's ray through the octree: a table of the words that it reads, and their octants over the picture.
 
-import { $ } from "./elements.js";
+import { $, element } from "./elements.js";
 import { dot, subtract } from "./vectors.js";
+import { hex, isLeaf, material, octant } from "./voxrt/words.js";
+/** @import { App } from "./app.js" @import { Registers, Size } from "./camera.js" */
+/** @import { Vector } from "./vectors.js" @import { Followed, Reading } from "./voxrt/voxrt.js" */
 
 const AXES = "xyz";
-const EDGES = [[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7], [0, 4], [1, 5], [2, 6], [3, 7]];
+const EDGES = ["01", "23", "45", "67", "02", "13", "46", "57", "04", "15", "26", "37"]; // corners
 const SVG = "http://www.w3.org/2000/svg";
-const hex = (word) => word.toString(16).toUpperCase().padStart(8, "0");
-const isLeaf = (word) => word >= 0x80000000;
+/** @typedef {Followed & { registers: Registers, size: Size, pixel: Size }} Way of a pixel's ray */
 
-// `app` is that of main.js.
 export class Inspector {
-  constructor(app) {
+  /** @type {Way | null} */ #way = null;
+
+  /** @param {App} app */ constructor(app) {
     this.app = app;
-    this.drawing = $("octants");
-    this.path = null;
     $("ray-close").onclick = () => this.clear();
   }
 
   clear() {
-    this.path = null;
+    this.#way = null;
     $("ray").hidden = true;
-    this.drawing.replaceChildren();
+    $("octants").replaceChildren();
   }
 
-  // Show the ray of pixel (column, row): what `followed` read, with the camera's registers and the frame's size.
-  show(followed, registers, size, pixel) {
-    this.path = { ...followed, registers, size, pixel };
-    const { readings, cell, material, face } = followed;
-    const { materials } = this.app.memory();
+  /** @param {number} id */ #materialName = (id) => this.app.memory()?.materials[id]?.name ?? `material ${id}`;
+
+  /** @param {Way} way */ show(way) {
+    this.#way = way;
+    const { readings, cell, material: id, face, pixel } = way;
     $("ray").hidden = false;
-    const hit = cell ? `hits ${materials[material]?.name ?? `material ${material}`} at voxel ${cell.join(", ")}${face < 3 ? `, through its ${AXES[face]} face` : ""}` : "hits nothing";
+    const side = face < 3 ? `, through its ${AXES[face]} face` : "";
+    const hit = cell ? `hits ${this.#materialName(id)} at voxel ${cell.join(", ")}${side}` : "hits nothing";
     $("ray-result").textContent = `Pixel ${pixel.join(", ")}: the ray reads ${readings.length} words and ${hit}.`;
-    $("ray-rows").replaceChildren(...readings.map((reading, i) => this.row(reading, readings[i + 1], i)));
-    this.draw();
+    $("ray-rows").replaceChildren(...readings.map((reading, i) => this.#row(reading, readings[i + 1], i)));
+    this.#draw();
     $("ray").scrollIntoView({ block: "nearest" });
   }
 
-  row(reading, next, i) {
-    const line = document.createElement("tr");
-    const cells = [String(i + 1), String(reading.address), hex(reading.word), `${2 ** reading.level}³`, this.why(reading, next)];
-    line.append(...cells.map((text) => Object.assign(document.createElement("td"), { textContent: text })));
-    line.tabIndex = 0;
-    for (const type of ["pointerenter", "focus"]) line.addEventListener(type, () => this.draw(i));
-    for (const type of ["pointerleave", "blur"]) line.addEventListener(type, () => this.draw());
+  /** @param {Reading} reading @param {Reading | undefined} next @param {number} i */ #row(reading, next, i) {
+    const { address, word, level } = reading;
+    const texts = [String(i + 1), String(address), hex(word), `${2 ** level}³`, this.#why(reading, next)];
+    const line = element("tr", { tabIndex: 0 }, ...texts.map((text) => element("td", {}, text)));
+    for (const type of ["pointerenter", "focus"]) line.addEventListener(type, () => this.#draw(i));
+    for (const type of ["pointerleave", "blur"]) line.addEventListener(type, () => this.#draw());
     return line;
   }
 
-  why({ word, level }, next) {
-    if (!isLeaf(word)) return `points to the block at ${word}: the ray goes down into ${next ? `octant ${(next.address - word) & 7} of it` : "it"}`;
-    if (word & 255) return `solid: ${this.app.memory().materials[word & 255]?.name ?? `material ${word & 255}`}. The ray ends here`;
+  /** @param {Reading} reading @param {Reading | undefined} next */ #why({ word, level }, next) {
+    if (!isLeaf(word)) {
+      const target = next ? `octant ${octant(word, next.address)} of it` : "it";
+      return `points to the block at ${word}: the ray goes down into ${target}`;
+    }
+    if (material(word)) return `solid: ${this.#materialName(material(word))}. The ray ends here`;
     if (!next) return "empty: the ray leaves the world";
     const axis = next.axis < 3 ? `the next plane across ${AXES[next.axis]}` : "its side";
-    return `empty: the ray leaves by ${axis}${next.level > level ? `, up to an octant of ${2 ** next.level}³` : ""}`;
+    const up = next.level > level ? `, up to an octant of ${2 ** next.level}³` : "";
+    return `empty: the ray leaves by ${axis}${up}`;
   }
 
-  // Draw the octants of all words read; the one of row `chosen` stands out.
-  draw(chosen = null) {
-    if (!this.path) return;
-    const { readings, registers, size, pixel } = this.path;
+  /** Draw the octants of all words read; the one of row `chosen` stands out. @param {number | null} chosen */
+  #draw(chosen = null) {
+    if (!this.#way) return;
+    const { readings, registers, size, pixel } = this.#way;
     const [width, height] = size;
-    this.drawing.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    const cubes = readings.map((reading, i) => this.cube(reading, registers, size, i === chosen, i === readings.length - 1)).filter(Boolean);
-    const mark = document.createElementNS(SVG, "circle");
-    for (const [name, value] of Object.entries({ cx: pixel[0] + 0.5, cy: pixel[1] + 0.5, r: width / 160, class: "mark" })) mark.setAttribute(name, value);
-    this.drawing.replaceChildren(...cubes, mark);
-  }
-
-  cube({ corner, level, word }, { position, look, right, up }, [width, height], chosen, last) {
-    const side = 2 ** level;
-    const eye = position.map((value) => value / 16);
-    const places = Array.from({ length: 8 }, (_, i) => {
-      const away = subtract(corner.map((value, axis) => value + ((i >> axis) & 1) * side), eye);
-      const far = dot(away, look) / dot(look, look);
-      const at = (axis) => dot(away, axis) / dot(axis, axis) / far;
-      return far > 1e-9 ? [Math.floor(width / 2) + at(right) + 0.5, Math.floor(height / 2) - at(up) + 0.5] : null;
+    $("octants").setAttribute("viewBox", `0 0 ${width} ${height}`);
+    const paths = readings.flatMap((reading, i) => {
+      const isHit = i === readings.length - 1 && material(reading.word) !== 0;
+      const kind = i === chosen ? "chosen" : isHit ? "hit" : isLeaf(reading.word) ? "leaf" : "inner";
+      const d = edgesOf(reading, registers, size);
+      return d === null ? [] : [svgElement("path", { d, class: kind })];
     });
-    if (places.includes(null)) return null; // behind the eye
-    const path = document.createElementNS(SVG, "path");
-    path.setAttribute("d", EDGES.map(([a, b]) => `M${places[a].map((v) => v.toFixed(1))}L${places[b].map((v) => v.toFixed(1))}`).join(""));
-    path.setAttribute("class", chosen ? "chosen" : last && word & 255 ? "hit" : isLeaf(word) ? "leaf" : "inner");
-    return path;
+    const mark = { cx: pixel[0] + 0.5, cy: pixel[1] + 0.5, r: width / 160, class: "mark" };
+    $("octants").replaceChildren(...paths, svgElement("circle", mark));
   }
+}
+
+/** @param {string} tag @param {Record<string, string | number>} attributes */ function svgElement(tag, attributes) {
+  const made = document.createElementNS(SVG, tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, String(value));
+  return made;
+}
+
+/** The edges of an octant; null behind the eye. @param {Reading} reading @param {Registers} registers @param {Size}
+ * size */
+function edgesOf({ corner, level }, { position, look, right, up }, [width, height]) {
+  const side = 2 ** level;
+  const eye = position.map((value) => value / 16);
+  const places = Array.from({ length: 8 }, (_, i) => {
+    const place = corner.map((value, axis) => value + ((i >> axis) & 1) * side);
+    const away = subtract(place, eye);
+    const far = dot(away, look) / dot(look, look);
+    /** @param {Vector} axis */ const at = (axis) => dot(away, axis) / dot(axis, axis) / far;
+    return far > 1e-9 ? [Math.floor(width / 2) + at(right) + 0.5, Math.floor(height / 2) - at(up) + 0.5] : null;
+  });
+  const texts = places.map((place) => place?.map((value) => value.toFixed(1)));
+  if (texts.includes(undefined)) return null;
+  return EDGES.map(([a, b]) => `M${texts[Number(a)]}L${texts[Number(b)]}`).join("");
 }

@@ -3,109 +3,147 @@
 //
 // Buffers of bands go to the workers and back. A frame keeps its bands until the next one is shown.
 
+import { Events } from "./events.js";
 import { Hand } from "./hand.js";
+/** @import { Band, BandFrame } from "./band_picture.js" @import { Registers, Size } from "./camera.js" */
+/** @import { Memory } from "./memory.js" @import { Vector } from "./vectors.js" */
+/** @import { Look } from "./voxrt/voxrt.js" @import { WorkerCalls } from "./worker.js" */
 
 const TILE = 16; // rows of pixels
 const BANDS = 3; // per worker: they cost differently
 const AHEAD = 2; // bands per worker: it renders one while the next one waits there
 const MOST = 8; // workers
 const MEMORY = 1 << 30; // bytes of words in all workers
+const LIMITS = { size: [4096, 4096], width_step: 1, position_limit: 2 ** 27 };
+const DEVICE = { name: "this browser", features: ["light", "mirrors"], ...LIMITS };
 
-export class Painter extends EventTarget {
-  constructor(module) {
+/** A frame that is rendered. `since`: when it was requested; `left`: bands that are not rendered. @typedef {{
+ * request: number, camera: Registers, size: Size, since: number, scene: number, left: number, began: number | null,
+ * bands: Band[] }} Job */
+
+/** @typedef {{ job: Job, first: number, end: number }} Part of a frame: rows of tiles */
+/** @typedef {{ hand: Hand<WorkerCalls>, bands: number }} Artist a worker, and the bands that it has */
+
+/** @extends {Events<{ frame: BandFrame, trouble: string }>} */ export class Painter extends Events {
+  hello = { viewer: 1, device: DEVICE };
+  /** @type {Map<number, number>} when frames were requested that have not arrived, by request */ sent = new Map();
+  /** @type {Artist[]} */ #artists = [];
+  /** @type {Part[]} that no worker has yet */ #queue = [];
+  /** @type {Map<number, ArrayBuffer[]>} buffers that no band has, by length */ #buffers = new Map();
+  /** @type {Band[]} of the newest frame */ #shown = [];
+  #request = 0;
+  #sequence = 0;
+  #scene = 0;
+
+  /** @param {WebAssembly.Module} module */ constructor(module) {
     super();
     this.module = module;
-    this.hands = [];
-    this.sent = new Map(); // request -> since when
-    this.queue = []; // bands that no worker has yet
-    this.buffers = new Map(); // length -> those that no band has
-    this.shown = []; // bands of the newest frame
-    this.request = 0;
-    this.sequence = 0;
-    this.scene = 0;
-    this.hello = { viewer: 1, device: { name: "this browser", size: [4096, 4096], width_step: 1, position_limit: 2 ** 27, features: ["light", "mirrors"] } };
   }
 
-  get workers() { return this.hands.length; }
-
-  // Show another memory. `shading`: as of Voxrt.shade. Resolves when every worker has it.
+  /** Show another memory. Resolves when every worker has it. @param {Memory} memory @param {Look} shading */
   async load({ words, depth }, shading) {
-    const wanted = Math.max(1, Math.min(navigator.hardwareConcurrency || 2, MOST, Math.floor(MEMORY / (4 * words.length))));
-    this.scene++;
+    const fitting = Math.floor(MEMORY / (4 * words.length));
+    const wanted = Math.max(1, Math.min(navigator.hardwareConcurrency || 2, MOST, fitting));
+    this.#scene++;
     this.sent.clear();
-    this.queue = [];
-    while (this.hands.length > wanted) this.hands.pop().stop();
-    while (this.hands.length < wanted) this.hands.push(new Hand());
-    await Promise.all(this.hands.map(async (hand) => {
-      hand.bands ??= AHEAD; // none before it has started
-      if (!hand.worker) await hand.start(this.module).then(() => { hand.bands = 0; });
-      await hand.call("memory", { words, depth, shading });
-      this.next(hand);
-    }));
+    this.#queue = [];
+    for (const { hand } of this.#artists.splice(wanted)) hand.stop();
+    /** @type {Artist[]} */ const starting = [];
+    while (this.#artists.length < wanted) {
+      /** @type {Artist} */
+      const artist = { hand: new Hand("./worker.js"), bands: AHEAD }; // no more until it has started
+      this.#artists.push(artist);
+      starting.push(artist);
+    }
+    await Promise.all(
+      this.#artists.map(async (artist) => {
+        if (starting.includes(artist)) {
+          await artist.hand.call("start", { module: this.module });
+          artist.bands = 0;
+        }
+        await artist.hand.call("memory", { words, depth, shading });
+        this.#next(artist);
+      }),
+    );
   }
 
-  shade(shading) { for (const hand of this.hands) hand.call("shade", { shading }).catch(() => {}); }
+  /** @param {Look} shading */ shade(shading) {
+    for (const { hand } of this.#artists) hand.call("shade", { shading }).catch(() => {});
+  }
 
-  follow(origin, direction) { return this.hands[0].call("follow", { origin, direction }); }
-  census() { return this.hands[0].call("census"); }
+  /** @param {Vector} origin @param {Vector} direction */ follow(origin, direction) {
+    return this.#artists[0].hand.call("follow", { origin, direction });
+  }
 
-  // Ask for a frame; returns its number.
+  census() {
+    return this.#artists[0].hand.call("census", undefined);
+  }
+
+  /** Request a frame; returns its number. @param {{ camera: Registers, size: Size }} view */
   changeView({ camera, size }) {
-    const [width, height] = size;
-    const request = ++this.request;
+    const request = ++this.#request;
     const since = performance.now();
     this.sent.set(request, since);
-    const tiles = Math.ceil(height / TILE);
-    const step = Math.max(1, Math.ceil(tiles / (BANDS * this.hands.length)));
-    const job = { request, camera, size, since, scene: this.scene, left: Math.ceil(tiles / step), began: null, bands: [] };
-    for (let first = 0; first < tiles; first += step) this.queue.push({ job, first, end: Math.min(first + step, tiles) });
-    this.hands.forEach((hand) => this.next(hand));
+    const tiles = Math.ceil(size[1] / TILE);
+    const step = Math.max(1, Math.ceil(tiles / (BANDS * this.#artists.length)));
+    const left = Math.ceil(tiles / step);
+    /** @type {Job} */ const job = { request, camera, size, since, scene: this.#scene, left, began: null, bands: [] };
+    for (let first = 0; first < tiles; first += step)
+      this.#queue.push({ job, first, end: Math.min(first + step, tiles) });
+    for (const artist of this.#artists) this.#next(artist);
     return request;
   }
 
-  next(hand) {
-    while (hand.bands < AHEAD && this.queue.length) this.render(hand, this.queue.shift());
-  }
-
-  async render(hand, { job, first, end }) {
-    const [width, height] = job.size;
-    const buffer = this.buffers.get(4 * width * (Math.min(TILE * end, height) - TILE * first))?.pop() ?? null;
-    hand.bands++;
-    job.began ??= performance.now();
-    try {
-      const { camera, size } = job;
-      job.bands.push(await hand.call("render", { camera, size, first, end, buffer }, undefined, buffer ? [buffer] : []));
-      hand.bands--;
-      this.next(hand);
-      if (--job.left > 0) return;
-      if (job.scene === this.scene) this.finish(job);
-      else this.release(job.bands);
-    } catch (error) {
-      hand.bands--;
-      if (job.scene !== this.scene) return;
-      this.sent.delete(job.request);
-      this.queue = this.queue.filter((waiting) => waiting.job !== job);
-      this.dispatchEvent(new CustomEvent("trouble", { detail: error.message }));
+  /** @param {Artist} artist */ #next(artist) {
+    while (artist.bands < AHEAD) {
+      const part = this.#queue.shift();
+      if (!part) return;
+      this.#render(artist, part);
     }
   }
 
-  finish({ request, since, size: [width, height], bands, camera, began }) {
-    this.sent.delete(request);
-    this.dispatchEvent(new CustomEvent("frame", { detail: {
-      viewer: 1, request, requested: since, width, height, bands, camera,
-      seconds: (performance.now() - began) / 1000, rays: width * height, words: null, cycles: null, sequence: ++this.sequence,
-    } }));
-    const lengths = new Set(bands.map(({ pixels }) => pixels.byteLength));
-    for (const length of this.buffers.keys()) if (!lengths.has(length)) this.buffers.delete(length);
-    this.release(this.shown.filter(({ pixels }) => lengths.has(pixels.byteLength)));
-    this.shown = bands;
+  /** @param {Artist} artist @param {Part} part */ async #render(artist, { job, first, end }) {
+    const { camera, size } = job;
+    const [width, height] = size;
+    const length = 4 * width * (Math.min(TILE * end, height) - TILE * first);
+    const buffer = this.#buffers.get(length)?.pop() ?? null;
+    artist.bands++;
+    job.began ??= performance.now();
+    try {
+      const view = { camera, size, first, end, buffer };
+      job.bands.push(await artist.hand.call("render", view, undefined, buffer ? [buffer] : []));
+      artist.bands--;
+      this.#next(artist);
+      if (--job.left > 0) return;
+      if (job.scene === this.#scene) this.#finish(job, job.began);
+      else this.#release(job.bands);
+    } catch (error) {
+      artist.bands--;
+      if (job.scene !== this.#scene) return;
+      this.sent.delete(job.request);
+      this.#queue = this.#queue.filter((waiting) => waiting.job !== job);
+      this.emit("trouble", /** @type {Error} */ (error).message);
+    }
   }
 
-  // Later bands may use the buffers of these.
-  release(bands) {
-    for (const { pixels: { buffer } } of bands) {
-      if (!this.buffers.has(buffer.byteLength)) this.buffers.set(buffer.byteLength, []);
-      this.buffers.get(buffer.byteLength).push(buffer);
+  /** @param {Job} job @param {number} began */
+  #finish({ request, since, size: [width, height], bands, camera }, began) {
+    this.sent.delete(request);
+    const ids = { viewer: this.hello.viewer, request, requested: since, sequence: ++this.#sequence };
+    const seconds = (performance.now() - began) / 1000;
+    const figures = { seconds, rays: width * height, words: null, cycles: null };
+    this.emit("frame", { ...ids, ...figures, width, height, bands, camera });
+    const lengths = new Set(bands.map(({ pixels }) => pixels.byteLength));
+    for (const length of this.#buffers.keys()) if (!lengths.has(length)) this.#buffers.delete(length);
+    this.#release(this.#shown.filter(({ pixels }) => lengths.has(pixels.byteLength)));
+    this.#shown = bands;
+  }
+
+  /** Later bands may use the buffers of these. @param {Band[]} bands */
+  #release(bands) {
+    for (const { buffer } of bands.map(({ pixels }) => pixels)) {
+      const known = this.#buffers.get(buffer.byteLength) ?? [];
+      this.#buffers.set(buffer.byteLength, [...known, buffer]);
     }
   }
 }

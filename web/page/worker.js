@@ -1,42 +1,71 @@
-// One instance of voxrt off the page's thread: it builds memories, renders rows of frames, follows rays. Messages are
-// {id, call, ...}; answers {id, result} or {id, problem}, and {id, stage} before.
+// One instance of voxrt off the page's thread: it builds memories, renders rows of frames, follows rays.
 
-import { FLAT } from "./mem.js";
-import { answerWith } from "./worker_answers.js";
+import { FLAT } from "./memory.js";
 import { Voxrt } from "./voxrt/voxrt.js";
+import { answerWith } from "./worker_answers.js";
+/** @import { DroppedFile } from "./folder.js" @import { ReadFile } from "./files.js" */
+/** @import { Memory } from "./memory.js" @import { Camera, Look, Options, Size, Triple } from "./voxrt/voxrt.js" */
 
-let voxrt = null;
-let parsed = null; // the files that were read last: {source, read}
+const state = {
+  /** @type {Voxrt | null} */ voxrt: null,
+  /** @type {{ source: number, read: ReadFile } | null} the files that were read last */ parsed: null,
+};
 
-answerWith({
-  async start({ module }) { voxrt = await Voxrt.load(module); },
+function loaded() {
+  if (!state.voxrt) throw new Error("the worker has not started");
+  return state.voxrt;
+}
 
-  // `source` numbers the files: those that were read last are not read again.
-  async build({ files, source, depth, fill, bake, budget }, say) {
-    if (parsed?.source !== source) {
-      say("Reading");
-      const { readFiles } = await import("./files.js");
-      parsed = null;
-      parsed = { source, read: await readFiles(files, voxrt) };
-    }
-    const { read } = parsed;
-    if (read.memory) return { ...read.memory, name: read.name, file: read.file, fixed: true };
+/** Read files; those that were read last are not read again. @param {DroppedFile[]} files @param {number} source */
+async function read(files, source) {
+  if (state.parsed?.source !== source) {
+    const { readFiles } = await import("./files.js");
+    state.parsed = null;
+    state.parsed = { source, read: await readFiles(files, loaded()) };
+  }
+  return state.parsed.read;
+}
+
+const calls = {
+  /** @param {{ module: WebAssembly.Module }} job */ async start({ module }) {
+    state.voxrt = await Voxrt.load(module);
+  },
+
+  /** @param {Required<Omit<Options, "colours">> & { files: DroppedFile[], source: number }} job @param {(stage:
+   * string) => void} report */
+  async build({ files, source, depth, fill, bake, budget }, report) {
+    if (state.parsed?.source !== source) report("Reading");
+    const { name, file, memory, scene } = await read(files, source);
+    if (memory) return { ...memory, name, file, fixed: true };
     const start = performance.now();
-    say(`Voxelizing ${(2 ** depth).toLocaleString("en")}³`);
-    const built = voxrt.voxelize(read.scene, { depth, fill, bake, budget });
-    return {
-      ...built, name: read.name, file: read.file, fill, seconds: (performance.now() - start) / 1000,
-      warnings: [...read.scene.warnings, ...built.warnings], lighting: built.baked ? FLAT : null,
-    };
+    report(`Voxelizing ${(2 ** depth).toLocaleString("en")}³`);
+    const built = loaded().voxelize(scene, { depth, fill, bake, budget });
+    const seconds = (performance.now() - start) / 1000;
+    const warnings = [...scene.warnings, ...built.warnings];
+    return { ...built, name, file, fill, seconds, warnings, lighting: built.baked ? FLAT : null };
   },
 
-  memory({ words, depth, shading }) {
-    voxrt.setMemory(words, depth);
-    voxrt.shade(shading);
+  /** @param {{ words: Uint32Array, depth: number, shading: Look }} job */ memory({ words, depth, shading }) {
+    loaded().setMemory(words, depth);
+    loaded().shade(shading);
   },
-  shade({ shading }) { voxrt.shade(shading); },
-  census() { return { voxels: voxrt.voxels(), outline: voxrt.outline() }; },
 
-  render({ camera, size, first, end, buffer }) { return voxrt.renderImage(camera, size, first, end, buffer); },
-  follow({ origin, direction }) { return voxrt.follow(origin, direction); },
-});
+  /** @param {{ shading: Look }} job */ shade({ shading }) {
+    loaded().shade(shading);
+  },
+
+  census() {
+    return { voxels: loaded().voxels(), outline: loaded().outline() };
+  },
+
+  /** @param {{ camera: Camera, size: Size, first: number, end: number, buffer: ArrayBuffer | null }} job */
+  render({ camera, size, first, end, buffer }) {
+    return loaded().renderImage(camera, size, first, end, buffer);
+  },
+
+  /** @param {{ origin: Triple, direction: Triple }} job */ follow({ origin, direction }) {
+    return loaded().follow(origin, direction);
+  },
+};
+/** @typedef {typeof calls} WorkerCalls */
+answerWith(calls);

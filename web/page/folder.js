@@ -1,0 +1,29 @@
+// The files that were dropped together.
+
+/** @typedef {{ name: string, bytes: Uint8Array<ArrayBuffer> }} DroppedFile */
+
+export class FileError extends Error {
+  name = "FileError";
+}
+
+/** @param {string} name */ export const stem = (name) => name.slice(0, name.lastIndexOf("."));
+
+/** @param {string} name */ function decoded(name) {
+  try {
+    return decodeURIComponent(name);
+  } catch {
+    return name; // a plain name with "%"
+  }
+}
+
+export class Folder {
+  /** @param {DroppedFile[]} files */ constructor(files) {
+    this.files = new Map(files.map((file) => [file.name.toLowerCase(), file]));
+  }
+
+  /** The file of a path that a scene names. @param {string} path */
+  find(path) {
+    const plain = decoded(path).replaceAll("\\", "/").replace(/^.*\//, "");
+    return this.files.get(plain.toLowerCase());
+  }
+}
