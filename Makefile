@@ -7,12 +7,15 @@ PIP := $(BIN)/pip --quiet --disable-pip-version-check
 PACKAGE := $(shell find CMakeLists.txt pyproject.toml LICENSE README.md voxrt voxelize octree export rtl sim view board serve -type f -not -name '*.pyc' -not -path '*/.*' 2>/dev/null)
 CXX_FILES = $(shell find voxelize octree sim web examples tests -name '*.cpp' -o -name '*.h')
 
-.PHONY: help demo test slow lint lint-workflows hardware boards docs site web bench soak sanitize fuzz clean
+.PHONY: help demo configurations test quick assets slow lint lint-workflows hardware boards docs site web bench soak sanitize fuzz clean
 .DELETE_ON_ERROR:
 
 help:
 	@echo "make demo    set up $(VENV), build the example scene and ray-trace its preview"
+	@echo "make configurations  build and install every configuration of the simulated ray tracer; make demo builds one"
 	@echo "make test    set up $(VENV), run the tests on the installed wheel"
+	@echo "make quick   lint Python, run the tests of the folders that changed since the last commit"
+	@echo "make assets  list the public files that tests read and that are not here, with their origins"
 	@echo "make slow    run the tests that take minutes: the board designs in simulation, every attack on the server"
 	@echo "make lint    ruff, mypy --strict, clang-format, verilator --lint-only -Wall; the workflows"
 	@echo "make hardware  check the registers, run the cocotb benches and the formal proofs"
@@ -26,12 +29,31 @@ help:
 	@echo "make fuzz      fuzz both under the address and undefined sanitizers, RUNS=1000000 times each"
 	@echo "make clean   remove what the others made"
 
-demo: $(VENV)/.installed
+# One configuration of the ray tracer is enough, where not all are installed already. Dependencies are downloaded while
+# the compiler runs.
+DEMO_INSTALLED = $(if $(wildcard $(VENV)/.installed),$(VENV)/.installed,$(VENV)/.one)
+demo:
+	@$(MAKE) --jobs=2 --no-print-directory $(VENV)/.dependencies $(DEMO_INSTALLED)
 	$(BIN)/voxrt-build examples/courtyard.glb -o demo --preview demo/preview.png
+
+configurations: $(VENV)/.installed
 
 # pytest leaves the repository's root off the path, so that the wheel is what is tested; tests/conftest.py checks it.
 test: $(VENV)/.installed $(VENV)/.tools
 	VOXRT_EXPECT_INSTALLED=1 $(BIN)/pytest --numprocesses=auto
+
+# Each changed folder has its tests in the folder of the same name in tests/; those of voxrt/ itself are in api and cli.
+CHANGED = $(shell { git diff --name-only HEAD; git ls-files --others --exclude-standard; } | sed -nE \
+  -e 's#^voxrt/([a-z_]+)/.*#tests/\1 tests/api tests/cli#p; t' -e 's#^voxrt/.*#tests/api tests/cli#p; t' \
+  -e 's#^(tests/)?([a-z]+)/.*#tests/\2#p')
+quick: $(VENV)/.installed $(VENV)/.tools
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	VOXRT_EXPECT_INSTALLED=1 $(BIN)/pytest --numprocesses=auto tests/test_*.py $(wildcard $(sort $(CHANGED)))
+
+assets:
+	@$(PYTHON) tests/assets.py
 
 slow: $(VENV)/.installed $(VENV)/.tools
 	VOXRT_EXPECT_INSTALLED=1 $(BIN)/pytest -m slow
@@ -181,14 +203,21 @@ clean:
 	rm -rf $(VENV) build demo
 
 # Without pip's isolation, so that objects that are made stay valid; with ccache where it is, so that other folders of
-# the same sources are built quickly too.
+# the same sources are built quickly too. One job server is enough: make's would give Ninja one core.
 export CMAKE_CXX_COMPILER_LAUNCHER ?= $(shell command -v ccache)
-$(VENV)/.installed: $(VENV)/.build $(PACKAGE)
-	@echo "building voxrt, its native code and the verilated ray tracer: a few minutes when anything changed"
+$(VENV)/.one: CONFIGURATIONS := tiny
+$(VENV)/.installed: $(VENV)/.dependencies
+$(VENV)/.installed $(VENV)/.one: $(VENV)/.build $(PACKAGE)
+	@echo "building voxrt, its native code and the verilated ray tracer: minutes the first time"
 	@rm -rf build/wheel
-	@PATH="$(abspath $(BIN)):$$PATH" $(PIP) wheel --no-build-isolation --no-deps --wheel-dir build/wheel .
-	@$(PIP) install --force-reinstall --no-deps build/wheel/*.whl
-	@$(PIP) install build/wheel/*.whl
+	@env -u MAKEFLAGS PATH="$(abspath $(BIN)):$$PATH" $(PIP) wheel --no-build-isolation --no-deps --wheel-dir build/wheel \
+	  --config-settings=cmake.define.VOXRT_RTL_CONFIGURATIONS=$(CONFIGURATIONS) .
+	@$(PIP) install --force-reinstall --no-deps --no-compile build/wheel/*.whl
+	@touch $@
+
+$(VENV)/.dependencies: pyproject.toml | $(VENV)/.build
+	@$(BIN)/python -c 'import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["dependencies"], sep="\n")' \
+	  | $(PIP) install --requirement /dev/stdin
 	@touch $@
 
 $(VENV)/.tools: $(VENV)/.ready pyproject.toml
