@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from assets import asset
+from assets import asset, over_assets
 
 from voxrt.voxelize import fit_grid, voxelize
 from voxrt.voxelize.assets import load
@@ -14,7 +14,7 @@ FOUNDATION = "usd/usd-wg-assets/test_assets/foundation/stage_configuration"
 MODES = "gltf/assimp/Mesh_PrimitiveMode/Mesh_PrimitiveMode_{:02}.gltf"
 
 
-@pytest.mark.parametrize(
+@over_assets(
     ("one", "other", "up"),
     [
         # The stages say z up of the coordinates that their OBJ twins hold, too.
@@ -33,7 +33,7 @@ def test_the_same_voxels(one, other, up, fill):
         assert np.array_equal(getattr(ours, name), getattr(twins, name)), name
 
 
-@pytest.mark.parametrize(
+@over_assets(
     ("one", "other", "up"),
     [
         ("gltf/gltf-pipeline/meshopt-no-fallback/meshopt-no-fallback.gltf",

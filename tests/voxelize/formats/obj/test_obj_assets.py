@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 import trimesh
-from assets import asset
+from assets import asset, over_assets
 from oracles.surfaces import area, bounds, scene_triangles, volume
 
 from voxrt.voxelize import AssetError
 from voxrt.voxelize.assets import load
 
 
-@pytest.mark.parametrize(
+@over_assets(
     ("name", "objects", "materials", "triangles"),
     [
         ("trimesh/rabbit.obj", 9, 1, 1252),
@@ -37,7 +37,7 @@ def test_same_surface_as_trimesh(name, objects, materials, triangles):
     assert volume(ours) == pytest.approx(volume(theirs), rel=0.02)
 
 
-@pytest.mark.parametrize(
+@over_assets(
     ("name", "objects", "materials", "size"),
     [
         # trimesh counts negative numbers back from the end of the file and not from the face.
@@ -55,7 +55,7 @@ def test_size(name, objects, materials, size):
     assert np.ptp(bounds(scene_triangles(scene)), axis=0).tolist() == pytest.approx(size, rel=0.01)
 
 
-@pytest.mark.parametrize(("name", "triangles"), [("box_UTF16BE", 12), ("box_longline", 944), ("concave_polygon", 64)])
+@over_assets(("name", "triangles"), [("box_UTF16BE", 12), ("box_longline", 944), ("concave_polygon", 64)])
 def test_odd_files(name, triangles):
     assert len(scene_triangles(load(asset(f"obj/assimp/{name}.obj")))) == triangles
 
@@ -72,7 +72,7 @@ def test_unreadable_vertices_that_no_face_has_are_counted():
     assert {one.kind: one.count for one in scene.warnings}["unused-vertex"] == 6
 
 
-@pytest.mark.parametrize(
+@over_assets(
     ("name", "message"),
     [
         ("assimp/invalid/empty.obj", "has no faces"),

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from assets import asset
+from assets import asset, over_assets
 from oracles.surfaces import area, bounds, scene_triangles
 from pxr import Usd, UsdGeom, UsdUtils
 
@@ -12,7 +12,7 @@ from voxrt.voxelize.assets import load
 WG = "usd/usd-wg-assets"
 
 
-@pytest.mark.parametrize(
+@over_assets(
     ("name", "triangles", "tight"),
     [
         (f"{WG}/test_assets/RelationshipEncapsulationTests/InternalReferenceTest.usda", 1298, False),
@@ -92,7 +92,7 @@ def test_native_instances_share_meshes():
     assert any(one.message.startswith(missing) for one in scene.warnings)
 
 
-@pytest.mark.parametrize(
+@over_assets(
     ("name", "colliders"),
     [
         ("newton/tests/assets/cube_cylinder.usda", [HullCollider, MeshCollider]),
@@ -116,7 +116,7 @@ def test_a_unit_stored_as_float_is_read():
     assert len(load(asset("malformed/tinyusdz/models/suzanne.usdc")).objects) == 1
 
 
-@pytest.mark.parametrize(
+@over_assets(
     ("name", "place"),
     [
         ("invalid-magic", "line 1"),

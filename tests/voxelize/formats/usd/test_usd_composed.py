@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from assets import asset
+from assets import asset, over_assets
 from oracles.surfaces import bounds, scene_triangles, volume
 from oracles.usd_in_process import load_usd
 from pxr import Sdf, Usd, UsdGeom, UsdSkel, UsdUtils
@@ -99,7 +99,7 @@ def test_instancers_of_instancers_are_bounded(usd, monkeypatch):
         usd(body)
 
 
-@pytest.mark.parametrize(
+@over_assets(
     ("name", "copies", "triangles"),
     [
         ("maya-usd/PointInstancer_Grid_70k.usda", 70_000, 840_000),
