@@ -53,7 +53,7 @@ quick: $(VENV)/.installed $(VENV)/.tools
 	VOXRT_EXPECT_INSTALLED=1 $(BIN)/pytest --numprocesses=auto tests/test_*.py $(wildcard $(sort $(CHANGED)))
 
 assets:
-	@$(PYTHON) tests/assets.py
+	@$(PYTHON) tests/list_assets.py
 
 slow: $(VENV)/.installed $(VENV)/.tools
 	VOXRT_EXPECT_INSTALLED=1 $(BIN)/pytest -m slow

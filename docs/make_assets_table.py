@@ -1,8 +1,9 @@
 """Write docs/assets.md: what becomes of each of the development assets.
 
 The page itself lists them: a new asset is added as a row with its name alone. They stand in ``../shared/assets`` beside
-the repository, or where ``VOXRT_ASSETS`` says; ``make assets`` has their origins. Each asset has a process of its own, bounded in memory and in time, so that none can take the
-others down with it. Run without arguments to write the page; ``--print`` prints it instead, for the tests to compare.
+the repository, or where ``VOXRT_ASSETS`` says; ``make assets`` has their origins. Each asset has a process of its own,
+bounded in memory and in time, so that none can take the others down with it. Run without arguments to write the page;
+``--print`` prints it instead, for the tests to compare.
 """
 
 from __future__ import annotations

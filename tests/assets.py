@@ -5,16 +5,15 @@
 
 from __future__ import annotations
 
-import os
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from list_assets import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from pathlib import Path
 
-ROOT = Path(os.environ.get("VOXRT_ASSETS", Path(__file__).resolve().parents[1].parent / "shared" / "assets"))
 ABSENT = f"no public files below {ROOT}: `make assets` says where to get them, VOXRT_ASSETS where they stand"
 
 
@@ -26,8 +25,14 @@ def asset(name: str) -> Path:
     return path
 
 
+def need_assets() -> None:
+    """Skip the calling module, whose tests all read assets, where there are none."""
+    if not ROOT.exists():
+        pytest.skip(ABSENT, allow_module_level=True)
+
+
 def over_assets(names: str | tuple[str, ...], values: Sequence[object]) -> pytest.MarkDecorator:
-    """As ``pytest.mark.parametrize``, for values that name assets; one skip in their place where there are none."""
+    """As ``pytest.mark.parametrize``, for a test that reads assets; one skip in its place where there are none."""
     if ROOT.exists():
         return pytest.mark.parametrize(names, values)
     count = 1 if isinstance(names, str) else len(names)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 from assets import asset, over_assets
 from PIL import Image
 

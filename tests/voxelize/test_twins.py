@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
-from assets import asset, over_assets
+from assets import asset, need_assets
 
 from voxrt.voxelize import fit_grid, voxelize
 from voxrt.voxelize.assets import load
+
+need_assets()
 
 ARRAYS = ("brick_codes", "brick_masks", "octant_codes", "octant_levels")
 
@@ -14,7 +16,7 @@ FOUNDATION = "usd/usd-wg-assets/test_assets/foundation/stage_configuration"
 MODES = "gltf/assimp/Mesh_PrimitiveMode/Mesh_PrimitiveMode_{:02}.gltf"
 
 
-@over_assets(
+@pytest.mark.parametrize(
     ("one", "other", "up"),
     [
         # The stages say z up of the coordinates that their OBJ twins hold, too.
@@ -33,7 +35,7 @@ def test_the_same_voxels(one, other, up, fill):
         assert np.array_equal(getattr(ours, name), getattr(twins, name)), name
 
 
-@over_assets(
+@pytest.mark.parametrize(
     ("one", "other", "up"),
     [
         ("gltf/gltf-pipeline/meshopt-no-fallback/meshopt-no-fallback.gltf",

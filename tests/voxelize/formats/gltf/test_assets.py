@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 import trimesh
-from assets import asset, over_assets
+from assets import asset, need_assets
 
 from voxrt.voxelize import AssetError, load
+
+need_assets()
 
 
 def world(scene):
@@ -17,7 +19,7 @@ def world(scene):
     return np.concatenate(corners)
 
 
-@over_assets(
+@pytest.mark.parametrize(
     ("name", "triangles", "size", "uniform"),
     [
         ("gltf/trimesh/CesiumMilkTruck.glb", 3624, (4.87, 2.58, 2.79), 2),
@@ -61,7 +63,7 @@ def test_sizes_are_those_that_another_reader_measured(name, triangles, size, uni
     np.testing.assert_allclose(np.ptp(corners.reshape(-1, 3), axis=0), size, rtol=6e-3, atol=1e-9)
 
 
-@over_assets(
+@pytest.mark.parametrize(
     "name",
     [
         "gltf/trimesh/CesiumMilkTruck.glb",

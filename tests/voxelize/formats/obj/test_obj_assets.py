@@ -3,14 +3,16 @@
 import numpy as np
 import pytest
 import trimesh
-from assets import asset, over_assets
+from assets import asset, need_assets
 from oracles.surfaces import area, bounds, scene_triangles, volume
 
 from voxrt.voxelize import AssetError
 from voxrt.voxelize.assets import load
 
+need_assets()
 
-@over_assets(
+
+@pytest.mark.parametrize(
     ("name", "objects", "materials", "triangles"),
     [
         ("trimesh/rabbit.obj", 9, 1, 1252),
@@ -37,7 +39,7 @@ def test_same_surface_as_trimesh(name, objects, materials, triangles):
     assert volume(ours) == pytest.approx(volume(theirs), rel=0.02)
 
 
-@over_assets(
+@pytest.mark.parametrize(
     ("name", "objects", "materials", "size"),
     [
         # trimesh counts negative numbers back from the end of the file and not from the face.
@@ -55,7 +57,7 @@ def test_size(name, objects, materials, size):
     assert np.ptp(bounds(scene_triangles(scene)), axis=0).tolist() == pytest.approx(size, rel=0.01)
 
 
-@over_assets(("name", "triangles"), [("box_UTF16BE", 12), ("box_longline", 944), ("concave_polygon", 64)])
+@pytest.mark.parametrize(("name", "triangles"), [("box_UTF16BE", 12), ("box_longline", 944), ("concave_polygon", 64)])
 def test_odd_files(name, triangles):
     assert len(scene_triangles(load(asset(f"obj/assimp/{name}.obj")))) == triangles
 
@@ -72,7 +74,7 @@ def test_unreadable_vertices_that_no_face_has_are_counted():
     assert {one.kind: one.count for one in scene.warnings}["unused-vertex"] == 6
 
 
-@over_assets(
+@pytest.mark.parametrize(
     ("name", "message"),
     [
         ("assimp/invalid/empty.obj", "has no faces"),

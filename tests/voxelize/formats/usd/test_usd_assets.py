@@ -2,17 +2,19 @@
 
 import numpy as np
 import pytest
-from assets import asset, over_assets
+from assets import asset, need_assets
 from oracles.surfaces import area, bounds, scene_triangles
 from pxr import Usd, UsdGeom, UsdUtils
 
 from voxrt.voxelize import AssetError, BoxCollider, HullCollider, MeshCollider, SphereCollider
 from voxrt.voxelize.assets import load
 
+need_assets()
+
 WG = "usd/usd-wg-assets"
 
 
-@over_assets(
+@pytest.mark.parametrize(
     ("name", "triangles", "tight"),
     [
         (f"{WG}/test_assets/RelationshipEncapsulationTests/InternalReferenceTest.usda", 1298, False),
@@ -92,7 +94,7 @@ def test_native_instances_share_meshes():
     assert any(one.message.startswith(missing) for one in scene.warnings)
 
 
-@over_assets(
+@pytest.mark.parametrize(
     ("name", "colliders"),
     [
         ("newton/tests/assets/cube_cylinder.usda", [HullCollider, MeshCollider]),
@@ -116,7 +118,7 @@ def test_a_unit_stored_as_float_is_read():
     assert len(load(asset("malformed/tinyusdz/models/suzanne.usdc")).objects) == 1
 
 
-@over_assets(
+@pytest.mark.parametrize(
     ("name", "place"),
     [
         ("invalid-magic", "line 1"),

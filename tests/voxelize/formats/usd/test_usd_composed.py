@@ -130,7 +130,7 @@ def test_real_instancers(name, copies, triangles):
     assert (corners.max(axis=0) <= np.array(box.GetMax()) + 1e-4).all()
 
 
-@pytest.mark.parametrize("seconds", [None, 0.0, 0.5, 1.25])
+@over_assets("seconds", [None, 0.0, 0.5, 1.25])
 def test_skinned_points_are_those_that_usd_bakes(seconds):
     path = asset("usd/usd-wg-assets/test_assets/USDZ/CesiumMan/CesiumMan.usdz")
     (ours,) = load_usd(path, time=seconds).objects
