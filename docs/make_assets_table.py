@@ -36,7 +36,7 @@ MEMORY = 6 << 30
 SECONDS = 240
 PROCESSES = 2
 
-LISTED = re.compile(r"[|] `([^`]+/[^`]+)` [|]")
+LISTED = re.compile(r"\| `([^`]+/[^`]+)` \|")
 
 HEAD = """# What becomes of the development assets
 
