@@ -5,6 +5,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/pip --quiet --disable-pip-version-check
 # What the installed package is made of: touching any of it makes `make demo` and `make test` build it again.
 PACKAGE := $(shell find CMakeLists.txt pyproject.toml LICENSE README.md voxrt voxelize octree export rtl sim view board serve -type f -not -name '*.pyc' -not -path '*/.*' 2>/dev/null)
+INSTALLED := $(VENV)/.installed $(VENV)/.dependencies
 CXX_FILES = $(shell find voxelize octree sim web examples tests -name '*.cpp' -o -name '*.h')
 
 .PHONY: help demo configurations test quick assets slow lint lint-workflows hardware boards docs site web bench soak sanitize fuzz clean
@@ -29,24 +30,25 @@ help:
 	@echo "make fuzz      fuzz both under the address and undefined sanitizers, RUNS=1000000 times each"
 	@echo "make clean   remove what the others made"
 
-# One configuration of the ray tracer is enough, where not all are installed already. Dependencies are downloaded while
-# the compiler runs.
-DEMO_INSTALLED = $(if $(wildcard $(VENV)/.installed),$(VENV)/.installed,$(VENV)/.one)
+# pip downloads packages while the compiler runs.
+SET_UP := @$(MAKE) --jobs=2 --no-print-directory $(VENV)/.dependencies
+# One configuration of the ray tracer is enough, where not all are installed already.
 demo:
-	@$(MAKE) --jobs=2 --no-print-directory $(VENV)/.dependencies $(DEMO_INSTALLED)
+	$(SET_UP) $(if $(wildcard $(VENV)/.installed),$(VENV)/.installed,$(VENV)/.one)
 	$(BIN)/voxrt-build examples/courtyard.glb -o demo --preview demo/preview.png
 
-configurations: $(VENV)/.installed
+configurations: $(INSTALLED)
 
 # pytest leaves the repository's root off the path, so that the wheel is what is tested; tests/conftest.py checks it.
-test: $(VENV)/.installed $(VENV)/.tools
+test:
+	$(SET_UP) $(VENV)/.installed $(VENV)/.tools
 	VOXRT_EXPECT_INSTALLED=1 $(BIN)/pytest --numprocesses=auto
 
 # Each changed folder has its tests in the folder of the same name in tests/; those of voxrt/ itself are in api and cli.
 CHANGED = $(shell { git diff --name-only HEAD; git ls-files --others --exclude-standard; } | sed -nE \
   -e 's#^voxrt/([a-z_]+)/.*#tests/\1 tests/api tests/cli#p; t' -e 's#^voxrt/.*#tests/api tests/cli#p; t' \
   -e 's#^(tests/)?([a-z]+)/.*#tests/\2#p')
-quick: $(VENV)/.installed $(VENV)/.tools
+quick: $(INSTALLED) $(VENV)/.tools
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
@@ -55,10 +57,10 @@ quick: $(VENV)/.installed $(VENV)/.tools
 assets:
 	@$(PYTHON) tests/list_assets.py
 
-slow: $(VENV)/.installed $(VENV)/.tools
+slow: $(INSTALLED) $(VENV)/.tools
 	VOXRT_EXPECT_INSTALLED=1 $(BIN)/pytest -m slow
 
-lint: $(VENV)/.installed $(VENV)/.tools lint-workflows
+lint: $(INSTALLED) $(VENV)/.tools lint-workflows
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
@@ -70,8 +72,9 @@ WORKFLOW_FILES := .github .pre-commit-config.yaml .yamllint
 lint-workflows: $(VENV)/.tools $(VENV)/.actionlint
 	$(BIN)/yamllint --strict $(WORKFLOW_FILES)
 	$(BIN)/codespell $(WORKFLOW_FILES) SECURITY.md
-	$(BIN)/shellcheck .ci/run .github/*.sh
+	$(BIN)/shellcheck .ci/* .github/*.sh
 	$(BIN)/check-jsonschema --quiet --builtin-schema vendor.github-workflows .github/workflows/*.yml
+	$(BIN)/check-jsonschema --quiet --builtin-schema vendor.github-actions .github/*/action.yml
 	$(BIN)/check-jsonschema --quiet --builtin-schema vendor.dependabot .github/dependabot.yml
 	$(BIN)/check-jsonschema --quiet --builtin-schema vendor.github-issue-config .github/ISSUE_TEMPLATE/config.yml
 	$(BIN)/check-jsonschema --quiet --builtin-schema vendor.github-issue-forms \
@@ -79,11 +82,11 @@ lint-workflows: $(VENV)/.tools $(VENV)/.actionlint
 	@if test -x $(BIN)/actionlint; then echo $(BIN)/actionlint && PATH="$(abspath $(BIN)):$$PATH" actionlint; \
 	  else echo "actionlint is left out: it is built by Go, which is not here"; fi
 
-bench: $(VENV)/.installed
+bench: $(INSTALLED)
 	$(BIN)/python bench/demo.py
 
 MINUTES ?= 15
-soak: $(VENV)/.installed
+soak: $(INSTALLED)
 	$(BIN)/python bench/soak.py --minutes $(MINUTES) --write
 
 # The registers as generated, the cocotb benches and what they cover, the formal proofs. BENCHES=--quick leaves out the
@@ -97,16 +100,16 @@ hardware: $(VENV)/.hardware
 
 # Ten minutes and more per board. BOARDS chooses.
 BOARDS := ulx3s-12f ulx3s-45f ulx3s-85f ulx3s-85f-sdram icepi-zero
-boards: $(VENV)/.installed $(VENV)/.tools $(VENV)/.estimate
+boards: $(INSTALLED) $(VENV)/.tools $(VENV)/.estimate
 	for board in $(BOARDS); do \
 	  $(BIN)/python -m voxrt.board.designs.build $$board --netlist && \
 	  $(BIN)/python bench/boards.py $$board --rebuilt --write || exit 1; done
 
-docs: $(VENV)/.installed $(VENV)/.docs
+docs: $(INSTALLED) $(VENV)/.docs
 	$(BIN)/sphinx-build --quiet --fail-on-warning -b html docs build/docs
 
 # It needs npm, which fetches the loaders of three.js.
-site: $(VENV)/.installed $(VENV)/.web
+site: $(INSTALLED) $(VENV)/.web
 	$(BIN)/python web/make_site.py
 
 web: site $(VENV)/.tools
@@ -114,7 +117,11 @@ web: site $(VENV)/.tools
 
 # Without Python, so that the sanitizers see our own code alone. build/sanitize/SANITIZERS/PROGRAM for each of both.
 SANITIZERS := address-undefined thread
-SANITIZED := voxelize colour octree fit bake mesh_to_ray query_octree
+ROOMS := voxelize octree sim
+voxelize_programs := voxelize colour
+octree_programs := octree mesh_to_ray query_octree
+sim_programs := fit bake
+SANITIZED = $(foreach room,$(ROOMS),$($(room)_programs))
 sanitize: $(foreach program,$(SANITIZED),$(SANITIZERS:%=build/sanitize/%/$(program)))
 	for program in $^; do echo $$program && $$program || exit 1; done
 
@@ -206,7 +213,6 @@ clean:
 # the same sources are built quickly too. One job server is enough: make's would give Ninja one core.
 export CMAKE_CXX_COMPILER_LAUNCHER ?= $(shell command -v ccache)
 $(VENV)/.one: CONFIGURATIONS := tiny
-$(VENV)/.installed: $(VENV)/.dependencies
 $(VENV)/.installed $(VENV)/.one: $(VENV)/.build $(PACKAGE)
 	@echo "building voxrt, its native code and the verilated ray tracer: minutes the first time"
 	@rm -rf build/wheel
@@ -220,7 +226,7 @@ $(VENV)/.dependencies: pyproject.toml | $(VENV)/.build
 	  | $(PIP) install --requirement /dev/stdin
 	@touch $@
 
-$(VENV)/.tools: $(VENV)/.ready pyproject.toml
+$(VENV)/.tools: pyproject.toml | $(VENV)/.dependencies
 	@$(PIP) install --group dev
 	@touch $@
 
