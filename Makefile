@@ -5,14 +5,18 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/pip --quiet --disable-pip-version-check
 # What the installed package is made of: touching any of it makes `make demo` and `make test` build it again.
 PACKAGE := $(shell find CMakeLists.txt pyproject.toml LICENSE README.md voxrt voxelize octree export rtl sim view board serve -type f -not -name '*.pyc' -not -path '*/.*' 2>/dev/null)
+INSTALLED := $(VENV)/.installed $(VENV)/.dependencies
 CXX_FILES = $(shell find voxelize octree sim web examples tests -name '*.cpp' -o -name '*.h')
 
-.PHONY: help demo test slow lint lint-scripts lint-workflows hardware boards docs site web bench soak sanitize fuzz clean
+.PHONY: help demo configurations test quick assets slow lint lint-scripts lint-workflows hardware boards docs site web bench soak sanitize fuzz clean
 .DELETE_ON_ERROR:
 
 help:
 	@echo "make demo    set up $(VENV), build the example scene and ray-trace its preview"
+	@echo "make configurations  build and install every configuration of the simulated ray tracer; make demo builds one"
 	@echo "make test    set up $(VENV), run the tests on the installed wheel"
+	@echo "make quick   lint Python, run the tests of the folders that changed since the last commit"
+	@echo "make assets  list the public files that tests read and that are not here, with their origins"
 	@echo "make slow    run the tests that take minutes: the board designs in simulation, every attack on the server"
 	@echo "make lint    ruff, mypy --strict, clang-format, verilator --lint-only -Wall; Biome and tsc; the workflows"
 	@echo "make hardware  check the registers, run the cocotb benches and the formal proofs"
@@ -26,17 +30,39 @@ help:
 	@echo "make fuzz      fuzz both under the address and undefined sanitizers, RUNS=1000000 times each"
 	@echo "make clean   remove what the others made"
 
-demo: $(VENV)/.installed
+# pip downloads packages while the compiler runs.
+SET_UP := @$(MAKE) --jobs=2 --no-print-directory $(VENV)/.dependencies
+# One configuration of the ray tracer is enough, where not all are installed already.
+demo:
+	$(SET_UP) $(if $(wildcard $(VENV)/.installed),$(VENV)/.installed,$(VENV)/.one)
 	$(BIN)/voxrt-build examples/courtyard.glb -o demo --preview demo/preview.png
 
-# pytest leaves the repository's root off the path, so that the wheel is what is tested; tests/conftest.py checks it.
-test: $(VENV)/.installed $(VENV)/.tools
-	VOXRT_EXPECT_INSTALLED=1 $(BIN)/pytest --numprocesses=auto
+configurations: $(INSTALLED)
 
-slow: $(VENV)/.installed $(VENV)/.tools
+# pytest leaves the repository's root off the path, so that the wheel is what is tested; tests/conftest.py checks it.
+# Tests of one xdist_group share what one process has compiled.
+PYTEST := VOXRT_EXPECT_INSTALLED=1 $(BIN)/pytest --numprocesses=auto --dist=loadgroup
+test:
+	$(SET_UP) $(VENV)/.installed $(VENV)/.tools
+	$(PYTEST)
+
+# Each changed folder has its tests in the folder of the same name in tests/; those of voxrt/ itself are in api and cli.
+CHANGED = $(shell { git diff --name-only HEAD; git ls-files --others --exclude-standard; } | sed -nE \
+  -e 's#^voxrt/([a-z_]+)/.*#tests/\1 tests/api tests/cli#p; t' -e 's#^voxrt/.*#tests/api tests/cli#p; t' \
+  -e 's#^(tests/)?([a-z]+)/.*#tests/\2#p')
+quick: $(INSTALLED) $(VENV)/.tools
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(PYTEST) tests/test_*.py $(wildcard $(sort $(CHANGED)))
+
+assets:
+	@$(PYTHON) tests/list_assets.py
+
+slow: $(INSTALLED) $(VENV)/.tools
 	VOXRT_EXPECT_INSTALLED=1 $(BIN)/pytest -m slow
 
-lint: $(VENV)/.installed $(VENV)/.tools lint-workflows lint-scripts
+lint: $(INSTALLED) $(VENV)/.tools lint-workflows lint-scripts
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
@@ -62,8 +88,9 @@ WORKFLOW_FILES := .github .pre-commit-config.yaml .yamllint
 lint-workflows: $(VENV)/.tools $(VENV)/.actionlint
 	$(BIN)/yamllint --strict $(WORKFLOW_FILES)
 	$(BIN)/codespell $(WORKFLOW_FILES) SECURITY.md
-	$(BIN)/shellcheck .ci/run .github/*.sh
+	$(BIN)/shellcheck .ci/* .github/*.sh
 	$(BIN)/check-jsonschema --quiet --builtin-schema vendor.github-workflows .github/workflows/*.yml
+	$(BIN)/check-jsonschema --quiet --builtin-schema vendor.github-actions .github/*/action.yml
 	$(BIN)/check-jsonschema --quiet --builtin-schema vendor.dependabot .github/dependabot.yml
 	$(BIN)/check-jsonschema --quiet --builtin-schema vendor.github-issue-config .github/ISSUE_TEMPLATE/config.yml
 	$(BIN)/check-jsonschema --quiet --builtin-schema vendor.github-issue-forms \
@@ -71,11 +98,11 @@ lint-workflows: $(VENV)/.tools $(VENV)/.actionlint
 	@if test -x $(BIN)/actionlint; then echo $(BIN)/actionlint && PATH="$(abspath $(BIN)):$$PATH" actionlint; \
 	  else echo "actionlint is left out: it is built by Go, which is not here"; fi
 
-bench: $(VENV)/.installed
+bench: $(INSTALLED)
 	$(BIN)/python bench/demo.py
 
 MINUTES ?= 15
-soak: $(VENV)/.installed
+soak: $(INSTALLED)
 	$(BIN)/python bench/soak.py --minutes $(MINUTES) --write
 
 # The registers as generated, the cocotb benches and what they cover, the formal proofs. BENCHES=--quick leaves out the
@@ -89,16 +116,16 @@ hardware: $(VENV)/.hardware
 
 # Ten minutes and more per board. BOARDS chooses.
 BOARDS := ulx3s-12f ulx3s-45f ulx3s-85f ulx3s-85f-sdram icepi-zero
-boards: $(VENV)/.installed $(VENV)/.tools $(VENV)/.estimate
+boards: $(INSTALLED) $(VENV)/.tools $(VENV)/.estimate
 	for board in $(BOARDS); do \
 	  $(BIN)/python -m voxrt.board.designs.build $$board --netlist && \
 	  $(BIN)/python bench/boards.py $$board --rebuilt --write || exit 1; done
 
-docs: $(VENV)/.installed $(VENV)/.docs
+docs: $(INSTALLED) $(VENV)/.docs
 	$(BIN)/sphinx-build --quiet --fail-on-warning -b html docs build/docs
 
 # It needs npm, which fetches the loaders of three.js and the compiler of TypeScript.
-site: $(VENV)/.installed $(VENV)/.web web/node_modules/.package-lock.json
+site: $(INSTALLED) $(VENV)/.web web/node_modules/.package-lock.json
 	$(BIN)/python web/make_site.py
 
 web: site $(VENV)/.tools
@@ -106,7 +133,11 @@ web: site $(VENV)/.tools
 
 # Without Python, so that the sanitizers see our own code alone. build/sanitize/SANITIZERS/PROGRAM for each of both.
 SANITIZERS := address-undefined thread
-SANITIZED := voxelize colour octree fit bake mesh_to_ray query_octree
+ROOMS := voxelize octree sim
+voxelize_programs := voxelize colour
+octree_programs := octree mesh_to_ray query_octree
+sim_programs := fit bake
+SANITIZED = $(foreach room,$(ROOMS),$($(room)_programs))
 sanitize: $(foreach program,$(SANITIZED),$(SANITIZERS:%=build/sanitize/%/$(program)))
 	for program in $^; do echo $$program && $$program || exit 1; done
 
@@ -195,17 +226,23 @@ clean:
 	rm -rf $(VENV) build demo web/node_modules
 
 # Without pip's isolation, so that objects that are made stay valid; with ccache where it is, so that other folders of
-# the same sources are built quickly too.
+# the same sources are built quickly too. One job server is enough: make's would give Ninja one core.
 export CMAKE_CXX_COMPILER_LAUNCHER ?= $(shell command -v ccache)
-$(VENV)/.installed: $(VENV)/.build $(PACKAGE)
-	@echo "building voxrt, its native code and the verilated ray tracer: a few minutes when anything changed"
+$(VENV)/.one: CONFIGURATIONS := tiny
+$(VENV)/.installed $(VENV)/.one: $(VENV)/.build $(PACKAGE)
+	@echo "building voxrt, its native code and the verilated ray tracer: minutes the first time"
 	@rm -rf build/wheel
-	@PATH="$(abspath $(BIN)):$$PATH" $(PIP) wheel --no-build-isolation --no-deps --wheel-dir build/wheel .
-	@$(PIP) install --force-reinstall --no-deps build/wheel/*.whl
-	@$(PIP) install build/wheel/*.whl
+	@env -u MAKEFLAGS PATH="$(abspath $(BIN)):$$PATH" $(PIP) wheel --no-build-isolation --no-deps --wheel-dir build/wheel \
+	  --config-settings=cmake.define.VOXRT_RTL_CONFIGURATIONS=$(CONFIGURATIONS) .
+	@$(PIP) install --force-reinstall --no-deps --no-compile build/wheel/*.whl
 	@touch $@
 
-$(VENV)/.tools: $(VENV)/.ready pyproject.toml
+$(VENV)/.dependencies: pyproject.toml | $(VENV)/.build
+	@$(BIN)/python -c 'import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["dependencies"], sep="\n")' \
+	  | $(PIP) install --requirement /dev/stdin
+	@touch $@
+
+$(VENV)/.tools: pyproject.toml | $(VENV)/.dependencies
 	@$(PIP) install --group dev
 	@touch $@
 

@@ -1,8 +1,9 @@
 """Write docs/assets.md: what becomes of each of the development assets.
 
-The assets and the list of them, README.md, stand in ``../shared/assets`` beside the repository, or where
-``VOXRT_ASSETS`` says. Each asset has a process of its own, bounded in memory and in time, so that none can take the
-others down with it. Run without arguments to write the page; ``--print`` prints it instead, for the tests to compare.
+The page itself lists them: a new asset is added as a row with its name alone. They stand in ``../shared/assets`` beside
+the repository, or where ``VOXRT_ASSETS`` says; ``make assets`` has their origins. Each asset has a process of its own,
+bounded in memory and in time, so that none can take the others down with it. Run without arguments to write the page;
+``--print`` prints it instead, for the tests to compare.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ MEMORY = 6 << 30
 SECONDS = 240
 PROCESSES = 2
 
-LISTED = re.compile(r"\| ((?:gltf|obj|usd|stl|ply|trouble|malformed|vox)/[^|]*?)(?: \(\+\d+ companion files\))? \|")
+LISTED = re.compile(r"\| `([^`]+/[^`]+)` \|")
 
 HEAD = """# What becomes of the development assets
 
@@ -68,10 +69,9 @@ class Row:
         return " | ".join((f"| `{self.asset}`", *cells)) + " |\n"
 
 
-def listed_assets(root: Path) -> list[str]:
-    """Give the assets that the list names, in its order; companion files are none."""
-    text = (root / "README.md").read_text(encoding="utf-8")
-    return [found[1] for line in text.splitlines() if (found := LISTED.match(line))]
+def listed_assets() -> list[str]:
+    """Give the assets that the page has, in its order."""
+    return [found[1] for line in PAGE.read_text(encoding="utf-8").splitlines() if (found := LISTED.match(line))]
 
 
 def examine(root: Path, asset: str) -> Row:
@@ -145,7 +145,7 @@ def examine_all() -> list[Row]:
     formats = ("gltf.load", "obj.load", "ply.load", "stl.load", "usd.isolated")
     context.set_forkserver_preload(["voxrt.building.pipeline", *(f"voxrt.voxelize.formats.{name}" for name in formats)])
     with ThreadPoolExecutor(PROCESSES) as pool:
-        return list(pool.map(lambda asset: _examine_apart(context, asset), listed_assets(ROOT)))
+        return list(pool.map(lambda asset: _examine_apart(context, asset), listed_assets()))
 
 
 def page(rows: list[Row]) -> str:

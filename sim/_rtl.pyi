@@ -5,6 +5,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 CONFIGS: list[str]
+COMPLETE: bool
 FEATURES: dict[str, list[str]]
 CORES: list[str]
 

@@ -15,5 +15,8 @@ class SimulatorError(Exception):
 class NoSuchConfigurationError(SimulatorError):
     """The installation has no ray tracer of this configuration."""
 
-    def __init__(self, config: str, configs: Iterable[str]) -> None:
-        super().__init__(f"no ray tracer configuration {config!r}; there are {', '.join(sorted(configs))}")
+    def __init__(self, config: str, configs: Iterable[str], *, complete: bool) -> None:
+        others = "" if complete else "; run `make configurations` in the checkout for the others"
+        super().__init__(
+            f"no ray tracer configuration {config!r}; there are {', '.join(sorted(configs)) or 'none'}{others}"
+        )

@@ -142,5 +142,5 @@ def render_hardware(
 def _ray_tracer(config: str) -> Any:  # noqa: ANN401 - the native module may be absent
     _rtl = import_verilated("render with --engine model")
     if config not in _rtl.CONFIGS:
-        raise NoSuchConfigurationError(config, _rtl.CONFIGS)
+        raise NoSuchConfigurationError(config, _rtl.CONFIGS, complete=_rtl.COMPLETE)
     return _rtl

@@ -37,7 +37,7 @@ def open_rtl(config: str = "lit") -> RegisterDevice:
     """
     module = import_verilated("use --device model")
     if config not in module.CORES:
-        raise NoSuchConfigurationError(config, module.CORES)
+        raise NoSuchConfigurationError(config, module.CORES, complete=module.COMPLETE)
     core = module.Core(config)
     pause = partial(core.run, _PAUSE_CLOCKS)
     memory = _ExternalMemory(core) if core.cached else _MemoryPort(core)

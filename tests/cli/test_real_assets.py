@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
-from assets import asset
+from assets import asset, over_assets
 from PIL import Image
 
 import voxrt
@@ -33,7 +32,7 @@ REAL = [
 ]
 
 
-@pytest.mark.parametrize("name", REAL)
+@over_assets("name", REAL)
 def test_builds_and_previews(name, tmp_path):
     result = voxrt.build(
         asset(name), tmp_path, depth=6, preview=True, size=(96, 72), engine="model", allow_outside=True

@@ -2,7 +2,7 @@ import zlib
 
 import numpy as np
 import pytest
-from assets import asset
+from assets import asset, over_assets
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -84,7 +84,7 @@ def test_a_file_that_is_not_there(path):
         export.read_mem(path.parent)
 
 
-@pytest.mark.parametrize(
+@over_assets(
     ("name", "count", "last"), [("house", 4305, 0xFFFFFFF0), ("dog", 1049, 0xFFFFFFF0), ("cubes", 25, 0xFFFFFF01)]
 )
 def test_the_published_memories_keep_their_last_word(name, count, last):

@@ -7,7 +7,7 @@ from pathlib import Path
 import msgspec
 import numpy as np
 import pytest
-from assets import asset
+from assets import asset, over_assets
 from hypothesis import given, settings
 from oracles.random_worlds import dense_cubes
 
@@ -236,7 +236,7 @@ def test_names_that_are_no_file_names(tmp_path, name):
         export.write_rom(tmp_path, rom(name))
 
 
-@pytest.mark.parametrize(("name", "highest"), [("house", 7), ("dog", 5), ("cubes", 3)])
+@over_assets(("name", "highest"), [("house", 7), ("dog", 5), ("cubes", 3)])
 def test_the_published_memories(tmp_path, name, highest):
     shutil.copy(asset(f"../seed-memories/{name}.mem"), tmp_path)
     seed, assumed = export.read_rom(tmp_path / f"{name}.mem", depth=10)

@@ -4,7 +4,7 @@ import struct
 
 import numpy as np
 import pytest
-from assets import asset
+from assets import asset, over_assets
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -202,7 +202,7 @@ def test_damaged_files_are_refused_or_read(tmp_path):
     assert 100 < refused < 400
 
 
-@pytest.mark.parametrize(
+@over_assets(
     ("name", "voxels", "colours", "high"),
     [
         ("mikelovesrobots-mmmm/vox/scene_store8.vox", 441118, 49, (117, 61, 124)),

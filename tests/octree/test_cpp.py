@@ -19,9 +19,10 @@ add_executable(consumer {program})
 target_link_libraries(consumer PRIVATE voxrt::ray voxrt::octree voxrt::voxelize)
 """
 
-pytestmark = pytest.mark.skipif(
-    not (shutil.which("cmake") and shutil.which("c++")), reason="no CMake or no C++ compiler"
-)
+pytestmark = [
+    pytest.mark.xdist_group("cpp"),
+    pytest.mark.skipif(not (shutil.which("cmake") and shutil.which("c++")), reason="no CMake or no C++ compiler"),
+]
 
 
 def cmake(*arguments):

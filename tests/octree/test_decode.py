@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from assets import asset
+from assets import asset, over_assets
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles.random_worlds import dense_cubes
@@ -178,7 +178,7 @@ def test_random_memories_are_an_octree_or_an_error(words, depth):
         assert expected
 
 
-@pytest.mark.parametrize(
+@over_assets(
     ("name", "blocks", "levels", "bounds"),
     [
         ("house", 538, 6, ((0, 0, 64), (768, 960, 960))),

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from assets import over_assets
 from oracles.adversary import adversarial_cameras
 from oracles.cuts import memory_of
 from oracles.ray_batch import trace_batch
@@ -63,7 +64,7 @@ def test_the_ray_tracer_reads_no_word_in_vain(name):
         assert render(rom, camera, SIZE, engine="rtl").cost.words_read == traced.words_read
 
 
-@pytest.mark.parametrize("name", ["cubes", "dog", "house"])
+@over_assets("name", ["cubes", "dog", "house"])
 def test_the_published_memories_have_no_wrong_pixel(name):
     rom = rom_of(seed_words(name), SEED_DEPTH)
     agreed(rom, Camera(*HOUSE_CAMERA), (128, 128))

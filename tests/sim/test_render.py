@@ -5,6 +5,7 @@ import sys
 
 import numpy as np
 import pytest
+from assets import over_assets
 from oracles import worlds
 from oracles.cuts import memory_of
 from oracles.ray_batch import trace_batch
@@ -60,7 +61,7 @@ def test_the_model_gives_a_whole_frame(rom):
     assert {3 + 1, 4 + 3 + 1} <= set(np.unique(frame.material))
 
 
-@pytest.mark.parametrize("name", ["cubes", "dog", "house"])
+@over_assets("name", ["cubes", "dog", "house"])
 def test_the_published_memories_are_seen_without_a_wrong_pixel(name):
     words = seed_words(name)
     rom = rom_of(words, SEED_DEPTH, name)

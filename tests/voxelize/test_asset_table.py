@@ -13,7 +13,7 @@ DOCS = Path(__file__).resolve().parents[2] / "docs"
 
 
 def test_every_asset_is_built_or_refused_as_documented():
-    asset("README.md")
+    asset("gltf")
     script = DOCS / "make_assets_table.py"
     done = subprocess.run([sys.executable, script, "--print"], capture_output=True, text=True, timeout=900, check=True)
     documented, found = (DOCS / "assets.md").read_text(encoding="utf-8").splitlines(), done.stdout.splitlines()

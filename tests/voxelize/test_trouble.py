@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import trimesh
-from assets import asset
+from assets import asset, over_assets
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles.meshes import MATERIALS, box_mesh, icosphere, one_object, scene_of, without
@@ -173,7 +173,7 @@ TROUBLE = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("name", TROUBLE)
+@over_assets("name", TROUBLE)
 def test_trouble(name):
     """Solid holds the shell; the same for every thread count; between the mesh's volume and that and its shell."""
     loaded = trimesh.load(asset("trouble/" + name), force="mesh", process=False)

@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
-from assets import asset
+from assets import asset, need_assets
 
 from voxrt.voxelize import fit_grid, voxelize
 from voxrt.voxelize.assets import load
+
+need_assets()
 
 ARRAYS = ("brick_codes", "brick_masks", "octant_codes", "octant_levels")
 

@@ -6,7 +6,7 @@ import hashlib
 from pathlib import Path
 
 import pytest
-from assets import asset
+from assets import asset, over_assets
 from fakes.site import ROOT, node, site
 
 import voxrt
@@ -50,7 +50,7 @@ def test_examples_have_the_light_of_the_native_module(files: list[str], depth: i
     assert_same(*bake_both([ROOT / "examples" / name for name in files], depth, *DAYLIGHTS[daylight]))
 
 
-@pytest.mark.parametrize(
+@over_assets(
     "name",
     [
         *("gltf/trimesh/CesiumMilkTruck.glb", "gltf/bevy/animated/Fox.glb", "gltf/3d-demo-data/scene.glb"),

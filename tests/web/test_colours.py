@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from assets import asset
+from assets import asset, over_assets
 from fakes.site import node, site
 from oracles.gltf_writer import GltfWriter
 from oracles.meshes import box_mesh
@@ -241,7 +241,7 @@ ASSETS = (
 """Files of all kinds, with textures of PNG, with vertex colours and without either."""
 
 
-@pytest.mark.parametrize("name", ASSETS)
+@over_assets("name", ASSETS)
 def test_shared_assets_have_the_words_of_the_native_module(name: str) -> None:
     path = asset(name)
     beside = [one for one in sorted(path.parent.rglob("*")) if one.suffix in {".bin", ".png", ".mtl"}]

@@ -6,7 +6,7 @@ import hashlib
 from pathlib import Path
 
 import pytest
-from assets import asset
+from assets import asset, over_assets
 from fakes.site import node, site
 
 import voxrt
@@ -43,7 +43,7 @@ def test_a_scene_of_several_models_has_the_words_of_the_native_reader(tmp_path: 
         assert_same(path, found)
 
 
-@pytest.mark.parametrize(
+@over_assets(
     "name",
     [
         *("dot_vox/axes.vox", "dot_vox/placeholder-with-materials.vox", "opengametools/test_meta_chunk.vox"),

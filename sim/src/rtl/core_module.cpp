@@ -54,7 +54,7 @@ struct CoreConfiguration {
     std::unique_ptr<Core> (*make)();
 };
 
-constexpr CoreConfiguration cores[] = {
+const std::vector<CoreConfiguration> cores = { // none in a build of chosen configurations
 #define VOXRT_CORE(name) {#name, make_core_##name},
 #include "cores.inc"
 #undef VOXRT_CORE

@@ -1,6 +1,7 @@
 // voxrt.sim._rtl: the verilated ray tracer for Python. Every argument is checked here.
 //
 //   CONFIGS: list[str]        names of the configurations that were built
+//   COMPLETE: bool            whether they are all of rtl/configurations.json, and the whole cores too
 //   FEATURES: dict[str, list[str]]  which of "light", "mirrors" and "lod" each of them has built in
 //   Tracer(config)            one instance of the design with its own memory; one call at a time (RuntimeError)
 //     .memory_words           how many words the simulated memory holds
@@ -266,6 +267,7 @@ NB_MODULE(_rtl, m) {
     for (const auto& configuration : voxrt::rtl::configurations)
         names.emplace_back(configuration.name);
     m.attr("CONFIGS") = names;
+    m.attr("COMPLETE") = VOXRT_RTL_COMPLETE;
     nb::dict features;
     for (const auto& configuration : voxrt::rtl::configurations)
         features[configuration.name] = voxrt::rtl::features_of(configuration);

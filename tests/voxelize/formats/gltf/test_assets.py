@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 import trimesh
-from assets import asset
+from assets import asset, need_assets
 from oracles.surfaces import area, bounds, scene_triangles, volume
 
 from voxrt.voxelize import AssetError, load
+
+need_assets()
 
 
 @pytest.mark.parametrize(

@@ -1,12 +1,12 @@
 """Files that the validator of glTF is tested with: each is refused for what is wrong with it."""
 
 import pytest
-from assets import asset
+from assets import asset, over_assets
 
 from voxrt.voxelize import AssetError, load
 
 
-@pytest.mark.parametrize(
+@over_assets(
     ("name", "message"),
     [
         ("buffer/wrong_bytelength.glb", r"buffers\[0\]: its byteLength is 17, and it has 16 bytes"),

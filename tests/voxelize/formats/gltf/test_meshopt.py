@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from assets import asset
+from assets import asset, over_assets
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -338,7 +338,7 @@ def test_damaged_views_are_refused_with_their_place(tmp_path):
         load(tmp_path / "a.gltf")
 
 
-@pytest.mark.parametrize(
+@over_assets(
     ("changes", "message"),
     [
         ({"byteLength": 10**6}, r"EXT_meshopt_compression: ends at byte \d+ of a buffer of \d+"),

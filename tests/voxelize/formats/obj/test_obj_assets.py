@@ -3,12 +3,14 @@
 import numpy as np
 import pytest
 import trimesh
-from assets import asset
+from assets import asset, need_assets
 from oracles.sound_scenes import kinds
 from oracles.surfaces import area, bounds, scene_triangles, volume
 
 from voxrt.voxelize import AssetError
 from voxrt.voxelize.assets import load
+
+need_assets()
 
 
 @pytest.mark.parametrize(

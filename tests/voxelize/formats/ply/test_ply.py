@@ -5,7 +5,7 @@ import struct
 import numpy as np
 import pytest
 import trimesh
-from assets import asset
+from assets import asset, over_assets
 from hypothesis import given
 from hypothesis import strategies as st
 from oracles.surfaces import area, bounds, scene_triangles, volume
@@ -131,7 +131,7 @@ def test_damaged_files_are_read_or_refused(tmp_path_factory, data):
     assert np.isfinite(mesh.positions[mesh.triangles]).all()
 
 
-@pytest.mark.parametrize(
+@over_assets(
     "name",
     [
         "ply/USD-Fileformat-plugins/gargo.ply",
@@ -158,7 +158,7 @@ def test_a_cube_of_triangles_quads_and_edges():
     assert abs(volume(triangles)) == pytest.approx(1.0)
 
 
-@pytest.mark.parametrize(
+@over_assets(
     "name",
     [
         "assimp/invalid/empty.ply",

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import trimesh
-from assets import asset
+from assets import asset, over_assets
 from oracles.sound_scenes import kinds
 from oracles.surfaces import area, bounds, scene_triangles, volume
 
@@ -116,7 +116,7 @@ def test_refused(stl, data, message):
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize(
+@over_assets(
     "name",
     [
         "stl/trimesh/idler_riser.STL",

@@ -2,12 +2,14 @@
 
 import numpy as np
 import pytest
-from assets import asset
+from assets import asset, need_assets
 from oracles.surfaces import area, bounds, scene_triangles
 from pxr import Usd, UsdGeom, UsdUtils
 
 from voxrt.voxelize import AssetError, BoxCollider, HullCollider, MeshCollider, SphereCollider
 from voxrt.voxelize.assets import load
+
+need_assets()
 
 WG = "usd/usd-wg-assets"
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from assets import asset
+from assets import asset, over_assets
 from oracles.surfaces import bounds, scene_triangles, volume
 from oracles.usd_in_process import load_usd
 from pxr import Sdf, Usd, UsdGeom, UsdSkel, UsdUtils
@@ -99,7 +99,7 @@ def test_instancers_of_instancers_are_bounded(usd, monkeypatch):
         usd(body)
 
 
-@pytest.mark.parametrize(
+@over_assets(
     ("name", "copies", "triangles"),
     [
         ("maya-usd/PointInstancer_Grid_70k.usda", 70_000, 840_000),
@@ -130,7 +130,7 @@ def test_real_instancers(name, copies, triangles):
     assert (corners.max(axis=0) <= np.array(box.GetMax()) + 1e-4).all()
 
 
-@pytest.mark.parametrize("seconds", [None, 0.0, 0.5, 1.25])
+@over_assets("seconds", [None, 0.0, 0.5, 1.25])
 def test_skinned_points_are_those_that_usd_bakes(seconds):
     path = asset("usd/usd-wg-assets/test_assets/USDZ/CesiumMan/CesiumMan.usdz")
     (ours,) = load_usd(path, time=seconds).objects
