@@ -50,6 +50,7 @@ __all__ = [
     "RayHits",
     "RayPath",
     "Region",
+    "RenderOptions",
     "Rom",
     "RomError",
     "Scene",
@@ -98,6 +99,7 @@ _HOMES = {
     "voxrt.building.animation_takes": ("frame_times",),
     "voxrt.building.baking": ("Bake",),
     "voxrt.options.build_options": ("BuildOptions",),
+    "voxrt.options.render_options": ("RenderOptions",),
     "voxrt.building.result": ("BuildResult",),
     "voxrt.export": (
         "read_any",
@@ -189,6 +191,7 @@ if TYPE_CHECKING:  # type checkers see these names and no others: a misspelt one
     from voxrt.octree import BOARDS, Octree, Region, Rom, RomError, diff, differing_regions
     from voxrt.octree.camera import Camera, Lighting
     from voxrt.options.build_options import BuildOptions
+    from voxrt.options.render_options import RenderOptions
     from voxrt.outputs import OutputError
     from voxrt.sim import (
         Frame,

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from voxrt.cli.results import BuildReport
+from voxrt.cli.results.build_results import BuildReport
 from voxrt.voxelize import DEFAULT_COLOURS
 
 

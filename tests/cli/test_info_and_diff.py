@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from voxrt import Material, Rom
-from voxrt.cli.memory_results import DiffResult, InfoResult, RegionEntry
+from voxrt.cli.results.memory_results import DiffResult, InfoResult, RegionEntry
 from voxrt.export import write_rom
 from voxrt.octree import BOARDS, from_dense
 from voxrt.voxelize import EMPTY, Grid

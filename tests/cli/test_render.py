@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from voxrt.cli.results import RenderResult
+from voxrt.cli.results.build_results import RenderResult
 
 MODEL = ("--engine", "model", "--size", "64x48")
 

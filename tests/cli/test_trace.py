@@ -6,7 +6,7 @@ import msgspec
 import pytest
 
 from voxrt import read_rom
-from voxrt.cli.memory_results import TraceResult
+from voxrt.cli.results.memory_results import TraceResult
 from voxrt.octree import material_at
 
 

@@ -76,7 +76,7 @@ def test_pictures_of_everything(voxrt, built):
 @pytest.mark.parametrize("suffix", ["gif", "mp4"])
 def test_turntables(voxrt, built, suffix, monkeypatch):
     ffmpeg = pytest.importorskip("imageio_ffmpeg", reason="it writes MP4") if suffix == "mp4" else None
-    monkeypatch.setattr("voxrt.cli.view._TURNS", 6)
+    monkeypatch.setattr("voxrt.cli.commands.view._TURNS", 6)
     finished = voxrt("view", "house.mem", "--turntable", f"t.{suffix}", *SMALL)
     assert finished.code == 0, finished.err
     if ffmpeg is None:

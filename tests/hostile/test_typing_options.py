@@ -14,7 +14,7 @@ from PIL import Image
 
 from voxrt import BuildOptions, build, export
 from voxrt.building.fitting import fit_budget
-from voxrt.cli import progress
+from voxrt.cli.terminal import progress
 from voxrt.cli.run import run
 from voxrt.plans.estimate import BuildEstimate, estimate_build
 

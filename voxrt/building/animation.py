@@ -34,7 +34,8 @@ if TYPE_CHECKING:
 
     from voxrt.building.animation_takes import Take
     from voxrt.octree import Octree
-    from voxrt.options.build_options import BuildKeywords, BuildOptions
+    from voxrt.options.build_options import BuildOptions
+    from voxrt.options.keywords import BuildKeywords
     from voxrt.plans.estimate import BuildEstimate
     from voxrt.sources.source import Asset
     from voxrt.views.pictures import Picture

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from voxrt.views.pictures import render
 from voxrt.views.viewpoint import ViewpointError, aim_camera
@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from voxrt.octree import Rom
-    from voxrt.octree.camera import Camera, Lighting
-    from voxrt.options.build_options import Engine
-    from voxrt.sim import Dram, Frame
+    from voxrt.octree.camera import Camera
+    from voxrt.options.render_options import RenderOptions
+    from voxrt.sim import Frame
 
 _MOST_CAMERAS = 1 << 20
 _KEYS = {"position", "look", "right", "up"}
@@ -25,26 +25,20 @@ _KEYS = {"position", "look", "right", "up"}
 
 @dataclass(frozen=True, eq=False, slots=True)
 class PictureJob:
-    """What all pictures of a path have in common: the arguments of :func:`voxrt.render` but for the camera.
+    """What all pictures of a path have in common.
 
     Attributes
     ----------
-    rom, size, engine, config, lighting, samples, background, dram, root, lod
-        As :func:`voxrt.render` takes them.
+    rom
+        The memory.
+    options
+        How it is rendered.
     check
         Whether both engines render each picture.
     """
 
     rom: Rom
-    size: tuple[int, int]
-    engine: Engine
-    config: str
-    lighting: Lighting
-    samples: int
-    background: tuple[int, int, int] | Literal["transparent"] | None
-    dram: Dram | None
-    root: int
-    lod: float
+    options: RenderOptions
     check: bool
 
 
@@ -111,33 +105,10 @@ def take_picture(job: PictureJob, number: int, camera: Camera) -> PathPicture | 
 
     try:
         if job.check:
-            checked = check(
-                job.rom,
-                camera,
-                job.size,
-                lighting=job.lighting,
-                samples=job.samples,
-                background=job.background,
-                config=job.config,
-                dram=job.dram,
-                root=job.root,
-                lod=job.lod,
-            )
-            frame: Frame = getattr(checked, job.engine)
+            checked = check(job.rom, camera, **job.options.for_engines())
+            frame: Frame = getattr(checked, job.options.engine)
             return PathPicture(number, frame, checked.wrong_pixels)
-        frame = render(
-            job.rom,
-            camera,
-            size=job.size,
-            engine=job.engine,
-            config=job.config,
-            lighting=job.lighting,
-            samples=job.samples,
-            background=job.background,
-            dram=job.dram,
-            root=job.root,
-            lod=job.lod,
-        )
+        frame = render(job.rom, camera, job.options)
     except Exception as error:  # noqa: BLE001 - not every exception can travel
         return f"camera {number}: {error}"
     return PathPicture(number, frame, None)
@@ -168,24 +139,24 @@ def take_pictures(
         yield one
 
 
-def _camera(where: str, said: object, rom: Rom, size: tuple[int, int]) -> Camera:
-    if not isinstance(said, dict) or not said.keys() <= _KEYS:
+def _camera(where: str, entry: object, rom: Rom, size: tuple[int, int]) -> Camera:
+    if not isinstance(entry, dict) or not entry.keys() <= _KEYS:
         raise ViewpointError(f"{where}: is not an object with position, look, right and up alone")
-    for name, value in said.items():
+    for name, value in entry.items():
         if not (isinstance(value, list) and len(value) == 3) or not all(
             isinstance(one, int | float) and not isinstance(one, bool) for one in value
         ):
             raise ViewpointError(f"{where}: {name} must be three numbers")
     try:
-        position = said.get("position")
+        position = entry.get("position")
         if position is not None:
             position = tuple(round(16 * one) for one in position)
-        look, right, up = (None if name not in said else _register(said[name]) for name in ("look", "right", "up"))
+        look, right, up = (None if name not in entry else _register(entry[name]) for name in ("look", "right", "up"))
         return aim_camera(rom, size, position=position, look=look, right=right, up=up)
     except (ValueError, TypeError, OverflowError) as error:
         raise ViewpointError(f"{where}: {error}") from None
 
 
-def _register(said: list[float]) -> tuple[int, int, int]:
-    x, y, z = said
+def _register(parts: list[float]) -> tuple[int, int, int]:
+    x, y, z = parts
     return int(x), int(y), int(z)

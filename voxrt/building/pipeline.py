@@ -32,7 +32,8 @@ if TYPE_CHECKING:
     from voxrt.building.fitting import BudgetFit, InteriorFit
     from voxrt.octree import Octree, Rom
     from voxrt.octree.camera import Camera
-    from voxrt.options.build_options import BuildKeywords, BuildOptions, Fill, UpAxis
+    from voxrt.options.build_options import BuildOptions, Fill, UpAxis
+    from voxrt.options.keywords import BuildKeywords
     from voxrt.plans.cluster import ClusterProgress
     from voxrt.plans.estimate import BuildEstimate
     from voxrt.sources.source import Asset

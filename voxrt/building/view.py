@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from voxrt.options.build_options import PREVIEW_SIZE
+from voxrt.options.shared import PREVIEW_SIZE
 from voxrt.views.viewpoint import ViewpointError, authored_camera, authored_lighting, stands_inside
 from voxrt.voxelize import SceneWarning
 

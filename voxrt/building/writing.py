@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 from voxrt import export
 from voxrt.export.atomic import write_together
+from voxrt.options.build_options import BuildOptions
+from voxrt.options.option import options_of
 from voxrt.outputs import writing
 
 if TYPE_CHECKING:
@@ -14,7 +16,6 @@ if TYPE_CHECKING:
 
     from voxrt.building.output_files import OutputFiles
     from voxrt.building.result import BuildResult
-    from voxrt.options.build_options import BuildOptions
 
 
 def named_settings(options: BuildOptions) -> dict[str, str | int | float | bool | None]:
@@ -26,23 +27,13 @@ def named_settings(options: BuildOptions) -> dict[str, str | int | float | bool 
     >>> named_settings(BuildOptions(colours=8))["colours"]
     8
     """
-    settings: dict[str, str | int | float | bool | None] = {
-        "fill": options.fill,
-        "interior": options.interior,
-        "geometry": options.geometry,
-        "pow2": options.pow2,
-        "up": options.up,
-        "unit": options.unit,
-        "time": options.time,
-        "animation": options.animation,
-        "variants": ", ".join(options.variants) or None,
-        "colours": options.colours,
-        "bake": options.bake,
-    }
-    if options.ignore:
-        settings["ignore"] = ", ".join(options.ignore)
-    if options.bounds is not None:
-        settings["bounds"] = ", ".join(f"{value:g}" for value in options.bounds)
+    settings: dict[str, str | int | float | bool | None] = {}
+    for name, option in options_of(BuildOptions).items():
+        value = getattr(options, name)
+        if option.manifest == "always" or (option.manifest == "changed" and value != option.default):
+            if isinstance(value, tuple):
+                value = ", ".join(one if isinstance(one, str) else f"{one:g}" for one in value) or None
+            settings[name] = value
     return settings
 
 
