@@ -19,6 +19,7 @@ __all__ = [
     "Lighting",
     "Likeness",
     "NoSuchConfigurationError",
+    "PixelColour",
     "RayHits",
     "RayPath",
     "Reading",
@@ -30,6 +31,7 @@ __all__ = [
     "check",
     "compare",
     "comparison_sheet",
+    "explain_colour",
     "follow_pixel",
     "follow_ray",
     "frame_animation",
@@ -63,6 +65,7 @@ _HOMES = {
     "voxrt.sim.hardware": ("shader_features",),
     "voxrt.sim.image": ("write_png",),
     "voxrt.sim.likeness": ("Comparison", "Likeness", "View", "compare", "comparison_sheet"),
+    "voxrt.sim.pixel_colour": ("PixelColour", "explain_colour"),
     "voxrt.sim.path": ("RayPath", "Reading", "follow_pixel", "follow_ray"),
     "voxrt.sim.ray_query": ("RayHits", "cast_rays"),
     "voxrt.sim.rendering": ("Engine", "EngineCheck", "check", "render"),
@@ -88,6 +91,7 @@ if TYPE_CHECKING:  # type checkers see these names and no others
     from voxrt.sim.image import write_png
     from voxrt.sim.likeness import Comparison, Likeness, View, compare, comparison_sheet
     from voxrt.sim.path import RayPath, Reading, follow_pixel, follow_ray
+    from voxrt.sim.pixel_colour import PixelColour, explain_colour
     from voxrt.sim.ray_query import RayHits, cast_rays
     from voxrt.sim.rendering import Engine, EngineCheck, check, render
     from voxrt.sim.samples import Background

@@ -225,7 +225,7 @@ def _checked(
     if whole("samples", samples, 1, max(SAMPLES)) not in SAMPLES:
         raise ValueError(f"samples must be {', '.join(map(str, SAMPLES))}, not {samples}")
     _check_directions(camera, (width, height))
-    _check_lighting(lighting)
+    check_lighting(lighting)
     rom = put_background(rom, background)
     cameras = sample_cameras(camera, (width, height), samples)
     for one in cameras[1:]:
@@ -309,7 +309,8 @@ def _checked_lod(rom: Rom, lighting: Lighting, lod: float) -> float:
     return lod
 
 
-def _check_lighting(lighting: Lighting) -> None:
+def check_lighting(lighting: Lighting) -> None:
+    """Refuse a lighting that the engines cannot have; SimulatorError says why."""
     if not 0 <= lighting.bounces <= BOUNCE_LIMIT:
         raise SimulatorError(f"{lighting.bounces} reflections are not 0 … {BOUNCE_LIMIT}")
     if lighting.faces is not None and not (

@@ -25,6 +25,9 @@ MAY_IMPORT = {
 INSIDE_VOXRT = ("options", "sources", "views", "plans", "building", "boards", "cli")
 """The folders of ``voxrt/``, each of which imports itself and those before it."""
 
+INSIDE_CLI = ("terminal", "results", "inputs", "line", "commands", "run", "start")
+"""The folders of ``voxrt/cli/``, and its last modules, in the same order."""
+
 OUTSIDE = ("bench", "examples", "docs", "rtl", "tests")
 """Folders whose scripts import the rooms and each other. No room imports them; ``voxrt.rtl`` is for the front door."""
 
@@ -116,10 +119,11 @@ def test_rooms_import_in_one_direction(graph):
     assert not wrong, "\n".join(wrong)
 
 
-def test_the_folders_of_voxrt_import_in_one_direction(graph):
+@pytest.mark.parametrize(("above", "order"), [("voxrt", INSIDE_VOXRT), ("voxrt.cli", INSIDE_CLI)])
+def test_the_folders_of_voxrt_import_in_one_direction(graph, above, order):
     def place(module: str) -> int:
-        _, folder, *_ = (*module.split("."), "", "")
-        return INSIDE_VOXRT.index(folder) if folder in INSIDE_VOXRT else -1
+        folder = module.removeprefix(f"{above}.").split(".")[0]
+        return order.index(folder) if module.startswith(f"{above}.") and folder in order else -1
 
     wrong = [
         f"{name} imports {target}"

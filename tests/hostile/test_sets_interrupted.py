@@ -23,7 +23,8 @@ INTERRUPTIONS = int(os.environ.get("VOXRT_INTERRUPTIONS", "10"))
 DRIVER = """
 import json, os, shutil, signal, sys
 from voxrt.cli.start import start
-import voxrt.cli.app, voxrt.cli.commands.build, voxrt.cli.commands.convert, voxrt.cli.commands.upload, voxrt.cli.commands.view, voxrt.boards.board_scenes
+from voxrt.cli.commands import build, convert, upload, view
+import voxrt.boards.board_scenes
 import PIL.PngImagePlugin, trimesh, voxrt.serve.blob, voxrt.board.simulated.model, voxrt.board.scene_memory
 arguments, count, signals = json.loads(sys.argv[1])
 events = moment = number = 0

@@ -22,15 +22,15 @@ class ServeCommand:
     scenes: tuple[Path, ...] = option(
         files("SCENE"),
         (),
-        "Blobs, memories (.mem) and assets. The first is shown at once; the page lists all. Without scenes, the page lists "
-        "examples and has a place to drop files.",
+        "Blobs, memories (.mem) and assets. The first is shown at once; the page lists all. Without scenes, the page "
+        "lists examples and has a place to drop files.",
         ARGUMENTS,
     )
     device: str = option(
         text("model|sim|pynq|serial:PORT"),
         "model",
-        "The renderer: the exact model, the simulated hardware, which is slow, the PYNQ board that runs this command, or "
-        "a board at a serial line, such as serial:/dev/ttyUSB0. Its monitor follows the page.",
+        "The renderer: the exact model, the simulated hardware, which is slow, the PYNQ board that runs this "
+        "command, or a board at a serial line, such as serial:/dev/ttyUSB0. Its monitor follows the page.",
         _DEVICE,
     )
     config: str = CONFIG.field(
@@ -56,13 +56,13 @@ class ServeCommand:
     origin: tuple[str, ...] = option(
         texts("ORIGIN"),
         (),
-        "Further origins (http://NAME:PORT) whose pages may connect, such as that of a reverse proxy. This machine's own "
-        "addresses and names need no option.",
+        "Further origins (http://NAME:PORT) whose pages may connect, such as that of a reverse proxy. This machine's "
+        "own addresses and names need no option.",
         _NETWORK,
     )
     legacy_port: int | None = _PORT.field(
-        help="TCP port of the legacy protocol, for the desktop client of the original project: 28 bytes in, a raw picture "
-        "of 512x512 pixels out, no token."
+        help="TCP port of the legacy protocol, for the desktop client of the original project: 28 bytes in, a raw "
+        "picture of 512x512 pixels out, no token."
     )
     depth: int | None = DEPTH.field(help="Levels of the octrees of assets.")
     reporting: ReportOptions = nested(ReportOptions)
@@ -81,8 +81,8 @@ class UploadCommand:
     to: str | None = option(
         text("URL"),
         None,
-        "The address of the page, with its token, as the frame server printed it. Or the serial line of a board, such as "
-        "serial:/dev/ttyUSB0.",
+        "The address of the page, with its token, as the frame server printed it. Or the serial line of a board, "
+        "such as serial:/dev/ttyUSB0.",
         _DEVICE,
     )
     device: Literal["model", "sim"] | None = option(
@@ -117,9 +117,7 @@ class BitstreamCommand:
     load: bool = option(
         FLAG, False, "Load the bitstream into the board that is plugged in, by openFPGALoader.", HARDWARE
     )
-    rebuild: bool = option(
-        FLAG, False, "Synthesize, place and route the design anew. It takes minutes.", HARDWARE
-    )
+    rebuild: bool = option(FLAG, False, "Synthesize, place and route the design anew. It takes minutes.", HARDWARE)
     seed: int | None = option(INTEGER, None, "The seed of the placement, with {rebuild}.", HARDWARE)
     reporting: ReportOptions = nested(ReportOptions)
 
@@ -131,16 +129,16 @@ class CoreCommand:
     path: bool = option(
         FLAG,
         False,
-        "Print the folder of the SystemVerilog sources. Its voxrt.f lists them in the order in which tools must read them; "
-        "its README.md is their manual.",
+        "Print the folder of the SystemVerilog sources. Its voxrt.f lists them in the order in which tools must read "
+        "them; its README.md is their manual.",
         HARDWARE,
     )
     config: str | None = CONFIG.field(help="The configuration that {verilog} writes.")
     verilog: Path | None = option(
         file("FILE"),
         None,
-        "A .v to write: the configuration as one file of plain Verilog, top module voxrt_core, for tools that do not read "
-        "the SystemVerilog sources. yosys makes it.",
+        "A .v to write: the configuration as one file of plain Verilog, top module voxrt_core, for tools that do not "
+        "read the SystemVerilog sources. yosys makes it.",
         HARDWARE,
     )
     reporting: MessageOptions = nested(MessageOptions)

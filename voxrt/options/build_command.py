@@ -20,7 +20,8 @@ class BuildCommand:
     assets: tuple[Path, ...] = option(
         files("ASSET"),
         MISSING,
-        "A glTF (.gltf, .glb), OBJ, USD (.usd, .usda, .usdc, .usdz), STL or PLY file, or a scene of such files (.toml).",
+        "A glTF (.gltf, .glb), OBJ, USD (.usd, .usda, .usdc, .usdz), STL or PLY file, or a scene of such files "
+        "(.toml).",
         ARGUMENTS,
     )
     output: Path = option(
@@ -34,9 +35,9 @@ class BuildCommand:
     frames: FrameChoice | None = option(
         notations.FRAMES,
         None,
-        "Build an animation: one memory whose roots are its frames. START:STOP:COUNT: so many frames, evenly from second "
-        "START up to but without STOP, so that a loop closes (glTF, USD). files: each ASSET is a frame, in the natural "
-        "order of their names; a folder stands for the assets in it.",
+        "Build an animation: one memory whose roots are its frames. START:STOP:COUNT: so many frames, evenly from "
+        "second START up to but without STOP, so that a loop closes (glTF, USD). files: each ASSET is a frame, in "
+        "the natural order of their names; a folder stands for the assets in it.",
         CONTENT,
         is_rare=True,
     )

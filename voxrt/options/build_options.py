@@ -82,8 +82,8 @@ class BuildOptions:
     fill: Fill = option(
         one_of(get_args(Fill)),
         "auto",
-        "solid: fill what surfaces enclose, small holes or not. surface: keep only the shell. auto, the default: as solid, "
-        "but keep only the shell of open pieces.",
+        "solid: fill what surfaces enclose, small holes or not. surface: keep only the shell. auto, the default: as "
+        "solid, but keep only the shell of open pieces.",
         CONTENT,
         details="Open are pieces whose openings exceed 5 % of their area together, such as clothes.",
         manifest="always",
@@ -91,9 +91,9 @@ class BuildOptions:
     interior: int | str = option(
         notations.INTERIOR,
         "keep",
-        "Material of the hidden voxels: those that no ray from outside can reach. keep: the material of their object. "
-        "any: for each the material that makes the memory smallest. The name or the id of a material: that material for "
-        "all of them.",
+        "Material of the hidden voxels: those that no ray from outside can reach. keep: the material of their "
+        "object. any: for each the material that makes the memory smallest. The name or the id of a material: that "
+        "material for all of them.",
         CONTENT,
         is_rare=True,
         manifest="always",
@@ -168,8 +168,8 @@ class BuildOptions:
     bake: bool = option(
         FLAG,
         False,
-        "Bake light: every voxel at the surface gets the colour that it has under the sun and the sky. The memory is then "
-        "shown flat, with up to 254 colours.",
+        "Bake light: every voxel at the surface gets the colour that it has under the sun and the sky. The memory is "
+        "then shown flat, with up to 254 colours.",
         COLOUR,
         is_rare=True,
         manifest="always",
@@ -184,7 +184,8 @@ class BuildOptions:
     sky: float | str = option(
         notations.SKY,
         0.4,
-        "With {bake}: the light of the sky, as a strength such as 0.4 or as a colour such as #9db4d0. The sun has 0.65.",
+        "With {bake}: the light of the sky, as a strength such as 0.4 or as a colour such as #9db4d0. The sun has "
+        "0.65.",
         COLOUR,
         is_rare=True,
     )
@@ -218,15 +219,15 @@ class BuildOptions:
     )
     dialect: Dialect = DIALECT.field(
         default="report",
-        help="How the .mem file encodes materials. report: for the hardware of this project. seed-rtl: for the published "
-        "bitstreams of the original system. msb: for its C++ program. lod: that of {lod}.",
+        help="How the .mem file encodes materials. report: for the hardware of this project. seed-rtl: for the "
+        "published bitstreams of the original system. msb: for its C++ program. lod: that of {lod}.",
         is_rare=True,
     )
     lod: bool = option(
         FLAG,
         False,
-        "Level of detail: write mean materials too, in the dialect lod. Then pictures of far views can be rendered with "
-        "fewer words.",
+        "Level of detail: write mean materials too, in the dialect lod. Then pictures of far views can be rendered "
+        "with fewer words.",
         MEMORY,
         is_rare=True,
     )
@@ -242,8 +243,8 @@ class BuildOptions:
     camera: str | None = option(
         text("NAME"),
         None,
-        "The author's camera for the preview and for boards, by name or by number, counted from 0 (glTF, USD). The default "
-        "is the first. Without one, pictures show the whole scene from the front right and above.",
+        "The author's camera for the preview and for boards, by name or by number, counted from 0 (glTF, USD). The "
+        "default is the first. Without one, pictures show the whole scene from the front right and above.",
         PREVIEW,
         is_rare=True,
     )
@@ -259,8 +260,8 @@ class BuildOptions:
         is_rare=True,
     )
     engine: Engine = ENGINE.field(
-        help="What renders the preview. rtl: the verilated hardware, which counts its clock cycles. model: the exact C++ "
-        "model, which is faster. Both give the same pixels.",
+        help="What renders the preview. rtl: the verilated hardware, which counts its clock cycles. model: the exact "
+        "C++ model, which is faster. Both give the same pixels.",
         group=PREVIEW,
         is_rare=True,
     )
@@ -276,20 +277,18 @@ class BuildOptions:
     memory: int | None = option(
         notations.BYTES,
         None,
-        "Bytes that a build may take, such as 4G on the command line; the default is half of what is free. Larger scenes "
-        "are voxelized in tiles, squares of columns. Their octrees go to the folder NAME.tiles beside the output and are "
-        "joined there to the same result; a build that was killed goes on from them.",
+        "Bytes that a build may take, such as 4G on the command line; the default is half of what is free. Larger "
+        "scenes are voxelized in tiles, squares of columns. Their octrees go to the folder NAME.tiles beside the "
+        "output and are joined there to the same result; a build that was killed goes on from them.",
         RUNNING,
         is_rare=True,
     )
     scheduler: str | None = SCHEDULER.field(
-        help="Build on the cluster of this Dask scheduler, such as tcp://host:8786. Its workers open the asset and write "
-        "tiles at the same paths as this machine. Needs the extra cluster.",
+        help="Build on the cluster of this Dask scheduler, such as tcp://host:8786. Its workers open the asset and "
+        "write tiles at the same paths as this machine. Needs the extra cluster.",
         is_rare=True,
     )
-    workers: int | None = WORKERS.field(
-        help="Build by so many processes of this machine, 1 to 1024.", is_rare=True
-    )
+    workers: int | None = WORKERS.field(help="Build by so many processes of this machine, 1 to 1024.", is_rare=True)
 
     def __post_init__(self) -> None:
         if self.scheduler is not None and self.workers is not None:

@@ -67,8 +67,9 @@ COMMANDS = {
         "Show the octants of a memory or of an asset: in a window, as a picture, or as a file for other programs.",
         "picture_commands:ViewCommand",
         "voxrt view courtyard.mem --ray 320,240 --screenshot ray.png",
-        "Octants that others cover on all six sides are left out. In the window, a click on an octant shows its address, "
-        "word, level, bounds and material. A slider makes small octants uniform. The key c adds a plane that cuts.",
+        "Octants that others cover on all six sides are left out. In the window, a click on an octant shows its "
+        "address, word, level, bounds and material. A slider makes small octants uniform. The key c adds a plane "
+        "that cuts.",
     ),
     "trace": Command(
         "Print the path of one pixel's ray through the octree, word by word, and how the pixel gets its colour.",
@@ -89,8 +90,8 @@ COMMANDS = {
         "Make the bitstream of a board that shows a scene, turning, on its monitor.",
         "board_commands:BitstreamCommand",
         "voxrt bitstream courtyard.glb --board ulx3s-85f --load",
-        "The scene is written into the block RAMs of a design that is placed and routed already. NAME.bit and its report "
-        "NAME.report.json are written.",
+        "The scene is written into the block RAMs of a design that is placed and routed already. NAME.bit and its "
+        "report NAME.report.json are written.",
     ),
     "convert": Command(
         "Write a memory or an asset in another format. The suffixes of the files say which.",
@@ -131,4 +132,6 @@ COMMANDS = {
 class HelpCommand:
     """What ``voxrt help`` takes."""
 
-    command: str | None = option(Kind("COMMAND", str, as_it_is, choices=tuple(COMMANDS)), None, "The command.", ARGUMENTS)
+    command: str | None = option(
+        Kind("COMMAND", str, as_it_is, choices=tuple(COMMANDS)), None, "The command.", ARGUMENTS
+    )

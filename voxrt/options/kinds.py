@@ -89,7 +89,7 @@ def one_of(choices: Sequence[str]) -> Kind:
             return value
         from voxrt.voxelize.arguments import choice  # noqa: PLC0415
 
-        return choice(name, value, choices)  # type: ignore[arg-type]
+        return str(choice(name, value, choices))
 
     return Kind("|".join(choices), read, check, choices=tuple(choices))
 

@@ -29,17 +29,17 @@ class ConvertCommand:
     source: Path = option(
         file("FROM"),
         MISSING,
-        "A memory: .mem, .coe, .mif or .bin (with or without a manifest beside it), .blob, .svdag (a sparse voxel DAG), "
-        ".vox (MagicaVoxel), or .txt (a node listing of the original's authoring script). Or an asset, which is built "
-        "first.",
+        "A memory: .mem, .coe, .mif or .bin (with or without a manifest beside it), .blob, .svdag (a sparse voxel "
+        "DAG), .vox (MagicaVoxel), or .txt (a node listing of the original's authoring script). Or an asset, which "
+        "is built first.",
         ARGUMENTS,
     )
     target: Path = option(
         file("TO"),
         MISSING,
-        "The file to write. Whole memories: .mem, .coe, .mif or .bin, each with a manifest beside it, or .blob. For other "
-        "programs: .svdag (which voxels are solid, as a sparse voxel DAG), .vox (MagicaVoxel), .npz (NumPy), .ply, .glb "
-        "(glTF), .vtu (ParaView, PyVista) or .html.",
+        "The file to write. Whole memories: .mem, .coe, .mif or .bin, each with a manifest beside it, or .blob. For "
+        "other programs: .svdag (which voxels are solid, as a sparse voxel DAG), .vox (MagicaVoxel), .npz (NumPy), "
+        ".ply, .glb (glTF), .vtu (ParaView, PyVista) or .html.",
         ARGUMENTS,
     )
     depth: int | None = DEPTH.field(help="Levels of the octree, for an asset or if FROM does not state them.")
@@ -48,7 +48,8 @@ class ConvertCommand:
     material: tuple[str, ...] = option(
         texts("NAME=RRGGBB"),
         (),
-        "Name and colour of a material of a node listing. Give the option once per material, in the order of their ids.",
+        "Name and colour of a material of a node listing. Give the option once per material, in the order of their "
+        "ids.",
         MEMORY,
     )
     form: Literal["file", "core"] = option(
@@ -59,8 +60,8 @@ class ConvertCommand:
         OUTPUT,
     )
     config: str | None = CONFIG.field(
-        help="With {form} core: the configuration of the hardware. The default is tiny, or lit if the scene has a light "
-        "or mirrors."
+        help="With {form} core: the configuration of the hardware. The default is tiny, or lit if the scene has a "
+        "light or mirrors."
     )
     size: tuple[int, int] | None = SIZE.field(
         default=None,
@@ -94,9 +95,7 @@ class DiffCommand:
     second: Path | None = option(
         file("SECOND"), None, "Another, of the same depth; left out, two frames of FIRST are compared.", ARGUMENTS
     )
-    frame: int | None = option(
-        INTEGER, None, "Frame of FIRST, counted from 0. The default is 0.", MEMORY, metavar="K"
-    )
+    frame: int | None = option(INTEGER, None, "Frame of FIRST, counted from 0. The default is 0.", MEMORY, metavar="K")
     to_frame: int | None = option(
         INTEGER,
         None,
@@ -105,7 +104,7 @@ class DiffCommand:
         metavar="K",
     )
     depth: int | None = DEPTH.field(
-        help="Levels of the octree, for an asset or for a memory without a manifest. An asset has those of the other file "
-        "if that is a memory."
+        help="Levels of the octree, for an asset or for a memory without a manifest. An asset has those of the other "
+        "file if that is a memory."
     )
     reporting: ReportOptions = nested(ReportOptions)

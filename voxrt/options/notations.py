@@ -49,7 +49,9 @@ def _length(text: str, *, is_unit: bool) -> float:
     found = _LENGTH.fullmatch(text.strip())
     number, unit = found.groups() if found else (None, None)
     if found is None or not (number or (is_unit and unit)):
-        units = f", nor one of the units {', '.join(_UNITS)}" if is_unit else f", with one of {', '.join(_UNITS)} or none"
+        units = (
+            f", nor one of the units {', '.join(_UNITS)}" if is_unit else f", with one of {', '.join(_UNITS)} or none"
+        )
         raise ValueError(f"{text!r} is not a number{units}")
     try:
         return float(Decimal(number or 1) * _UNITS[unit.lower() if unit else "m"])
@@ -313,7 +315,9 @@ def _read_frames(text: str) -> FrameChoice:
     except (ValueError, IndexError):
         parts = []
     if len(parts) != 3 or not (isfinite(start) and isfinite(stop)):
-        raise ValueError(f"{text!r} is not START:STOP:COUNT, such as 0:2:24 for 24 frames of two seconds, and not files")
+        raise ValueError(
+            f"{text!r} is not START:STOP:COUNT, such as 0:2:24 for 24 frames of two seconds, and not files"
+        )
     if stop <= start:
         raise ValueError(f"{text}: the stop must be after the start, {parts[0]}")
     if not 1 <= count <= _MOST_FRAMES:

@@ -54,9 +54,7 @@ class RenderCommand:
     )
     size: tuple[int, int] = SIZE.field()
     samples: Literal[1, 2, 4] = SAMPLES.field()
-    background: Colour | None = BACKGROUND.field(
-        details="A transparent picture suits pages of any colour."
-    )
+    background: Colour | None = BACKGROUND.field(details="A transparent picture suits pages of any colour.")
     frame: int | None = option(
         INTEGER,
         None,
@@ -69,7 +67,8 @@ class RenderCommand:
     lighting: LightOptions = nested(LightOptions)
     engine: Engine = ENGINE.field()
     config: str | None = CONFIG.field(
-        help="The configuration of the hardware. The default is tiny, or lit for light or mirrors, or cached1 for {lod}.",
+        help="The configuration of the hardware. The default is tiny, or lit for light or mirrors, or cached1 for "
+        "{lod}.",
         details="It says what lanes, what memory and which features of the shader there are.",
     )
     check: bool = option(
@@ -81,8 +80,8 @@ class RenderCommand:
     latency: int | None = option(
         _CLOCKS,
         None,
-        "The latency of the external memory of a configuration with caches, such as cached16: clocks from an address to "
-        "the first word. The default is 50.",
+        "The latency of the external memory of a configuration with caches, such as cached16: clocks from an address "
+        "to the first word. The default is 50.",
         HARDWARE,
         is_rare=True,
     )
@@ -110,8 +109,8 @@ class RenderCommand:
     lod_cell: float | None = option(
         real("PIXELS", above=0, below=1024),
         None,
-        "With {lod}: the width of the widest cell that rays stop at, in pixels. With 0.5 pictures are closest to smooth "
-        "ones, with 2 they take the fewest cycles. The default is 1.",
+        "With {lod}: the width of the widest cell that rays stop at, in pixels. With 0.5 pictures are closest to "
+        "smooth ones, with 2 they take the fewest cycles. The default is 1.",
         _DETAIL,
         is_rare=True,
     )
@@ -122,8 +121,8 @@ class RenderCommand:
         None,
         "Render a picture for each camera of a JSON file, NAME-0000.png and so on.",
         _PATH,
-        details="The file is a list of objects with position, look, right and up, three numbers each, as the options of "
-        "these names.",
+        details="The file is a list of objects with position, look, right and up, three numbers each, as the options "
+        "of these names.",
     )
     scheduler: str | None = SCHEDULER.field(
         help="With {cameras}: render on the cluster of this Dask scheduler, such as tcp://host:8786.",
@@ -145,15 +144,16 @@ class CompareCommand:
     output: Path | None = option(
         notations.PICTURE,
         None,
-        "A .png of four pictures side by side: the meshes, the memory by the simulated hardware and by the exact model, "
-        "and the difference.",
+        "A .png of four pictures side by side: the meshes, the memory by the simulated hardware and by the exact "
+        "model, and the difference.",
         OUTPUT,
         flags=("--output", "-o"),
     )
     curve: Path | None = option(
         notations.PICTURE,
         None,
-        "A .png that plots the similarity against depth and words. The asset is built at each depth up to the memory's.",
+        "A .png that plots the similarity against depth and words. The asset is built at each depth up to the "
+        "memory's.",
         OUTPUT,
     )
     size: tuple[int, int] = SIZE.field()
@@ -204,9 +204,7 @@ class ViewCommand:
         help="Width and height in pixels. The default is 1024x768, or 1280x720 with {ray} or a second scene.",
     )
     depth: int | None = DEPTH.field()
-    screenshot: Path | None = option(
-        notations.PICTURE, None, "Write this .png instead of opening a window.", OUTPUT
-    )
+    screenshot: Path | None = option(notations.PICTURE, None, "Write this .png instead of opening a window.", OUTPUT)
     turntable: Path | None = option(
         file("FILE"),
         None,
@@ -236,7 +234,6 @@ class TraceCommand:
         PICTURE,
     )
     size: tuple[int, int] = SIZE.field(help="Width and height of that picture in pixels.")
-    background: Colour | None = BACKGROUND.field()
     depth: int | None = DEPTH.field()
     sight: CameraOptions = nested(CameraOptions)
     lighting: LightOptions = nested(LightOptions)

@@ -36,8 +36,8 @@ class RenderOptions:
     lighting: Lighting | None = option(
         ANYTHING,
         None,
-        "Brightness of faces, light and mirrors. For light and mirrors the hardware needs a configuration that has them. "
-        "None takes the default brightness of faces.",
+        "Brightness of faces, light and mirrors. For light and mirrors the hardware needs a configuration that has "
+        "them. None takes the default brightness of faces.",
         None,
     )
     samples: int = SAMPLES.field()

@@ -43,8 +43,8 @@ BACKGROUND = Option(
 ENGINE = Option(
     one_of(get_args(Engine)),
     "rtl",
-    "rtl: the verilated hardware, which counts its clock cycles. model: the exact C++ model, which is faster. Both give "
-    "the same pixels.",
+    "rtl: the verilated hardware, which counts its clock cycles. model: the exact C++ model, which is faster. Both "
+    "give the same pixels.",
     HARDWARE,
 )
 CONFIG = Option(text("NAME"), None, "The configuration of the hardware.", HARDWARE)
@@ -133,8 +133,8 @@ class LightOptions:
     bounces: int | None = option(
         INTEGER,
         None,
-        "The most reflections of a ray by mirrors, 0 to 15. With 0, mirrors are like other materials. The default is that "
-        "of the memory, or 0.",
+        "The most reflections of a ray by mirrors, 0 to 15. With 0, mirrors are like other materials. The default is "
+        "that of the memory, or 0.",
         LIGHT,
         is_rare=True,
     )
@@ -144,6 +144,6 @@ class LightOptions:
         "What brightness depends on: the side of a block, an angle, or nothing. The default is that of the memory, or "
         "faces.",
         LIGHT,
-        details="faces: each side of a block has its own; the top is the brightest. report: the angle to the camera or to "
-        "the light, as in the report on the original hardware. flat: materials show their own colour.",
+        details="faces: each side of a block has its own; the top is the brightest. report: the angle to the camera "
+        "or to the light, as in the report on the original hardware. flat: materials show their own colour.",
     )

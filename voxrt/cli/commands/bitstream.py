@@ -10,19 +10,19 @@ from typing import TYPE_CHECKING
 import msgspec
 
 import voxrt
+from voxrt.cli.inputs.lighting import supported
 from voxrt.cli.results.bitstream_results import BitstreamResult, bitstream_result
+from voxrt.cli.results.build_results import print_json
 from voxrt.cli.terminal.budget_messages import budget_loss, budget_text
 from voxrt.cli.terminal.errors import UsageError
-from voxrt.cli.inputs.lighting import supported
 from voxrt.cli.terminal.messages import summarize, warn
 from voxrt.cli.terminal.progress import build_bar, stage_bar, transfer_bar
-from voxrt.cli.results.build_results import print_json
 from voxrt.outputs import check_folder, writing
 
 if TYPE_CHECKING:
-    from voxrt.options.board_commands import BitstreamCommand
     from voxrt.boards.bitstream import PlacedBoard
     from voxrt.export import Blob
+    from voxrt.options.board_commands import BitstreamCommand
 
 
 def run(options: BitstreamCommand) -> None:

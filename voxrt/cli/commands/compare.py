@@ -6,13 +6,13 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 import voxrt
+from voxrt.cli.results.build_results import print_json
 from voxrt.cli.results.memory_results import compare_result
 from voxrt.cli.terminal.messages import complain, summarize, tabulate, warn
-from voxrt.cli.results.build_results import print_json
 
 if TYPE_CHECKING:
-    from voxrt.options.picture_commands import CompareCommand
     from voxrt.octree import Rom
+    from voxrt.options.picture_commands import CompareCommand
     from voxrt.sim import Camera, EngineCheck
     from voxrt.views.depth_likeness import LikenessAtDepth
 
@@ -31,7 +31,9 @@ def run(options: CompareCommand) -> None:
     hardware = _hardware(memory, camera, options.size)
     outputs = {}
     if options.output is not None:
-        voxrt.save_picture(voxrt.comparison_sheet(found, None if hardware is None else hardware.rtl.colour), options.output)
+        voxrt.save_picture(
+            voxrt.comparison_sheet(found, None if hardware is None else hardware.rtl.colour), options.output
+        )
         outputs["picture"] = options.output
     points: tuple[LikenessAtDepth, ...] = ()
     if options.curve is not None:
@@ -46,7 +48,11 @@ def run(options: CompareCommand) -> None:
     rows = [(name.replace("_", " "), f"{value:.4g}") for name, value in asdict(found.likeness).items()]
     if wrong is not None:
         rows.append(("hardware", f"{wrong} pixels differ from the exact model"))
-    summarize(f"{options.rom.name} and {options.asset.name}:", rows + [("wrote", str(path)) for path in outputs.values()], answer=True)
+    summarize(
+        f"{options.rom.name} and {options.asset.name}:",
+        rows + [("wrote", str(path)) for path in outputs.values()],
+        answer=True,
+    )
     if points:
         heads = ("depth", "words", "silhouette IoU", "mean depth error, voxels", "SSIM", "PSNR, dB")
         tabulate(heads, [_row(point) for point in points], answer=True)

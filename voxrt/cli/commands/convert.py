@@ -6,41 +6,43 @@ from typing import TYPE_CHECKING
 
 import voxrt
 from voxrt.cli.inputs.configuration import find_configuration
-from voxrt.cli.terminal.errors import UsageError
 from voxrt.cli.inputs.lighting import supported
-from voxrt.cli.results.memory_results import ConvertResult
-from voxrt.cli.terminal.messages import name_file, summarize
-from voxrt.cli.results.build_results import print_json, warning_entries
 from voxrt.cli.inputs.source import read_source
+from voxrt.cli.results.build_results import print_json, warning_entries
+from voxrt.cli.results.memory_results import ConvertResult
+from voxrt.cli.terminal.errors import UsageError
+from voxrt.cli.terminal.messages import name_file, summarize
+from voxrt.options.shared import PREVIEW_SIZE
 from voxrt.outputs import check_folder, writing
 from voxrt.views.writers import WORD_WRITERS
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from voxrt.options.memory_commands import ConvertCommand
     from voxrt.cli.inputs.source import Source
+    from voxrt.options.memory_commands import ConvertCommand
 
 
 def run(options: ConvertCommand) -> None:
     """Write a memory or an asset in another format. The suffixes of the files say which."""
+    target, material = options.target, _colours(options.material)
     if options.form == "core":
-        if options.target.suffix.lower() in voxrt.WRITABLE_SUFFIXES:
-            raise UsageError(f"{options.target}: --form core writes several files; name a folder")
-        check_folder(options.target)
-        read = read_source(options.source, options.depth, options.from_dialect, _colours(options.material), frames=True)
-        files = _write_core(read, options.target, options.config, options.size or (640, 480))
+        if target.suffix.lower() in voxrt.WRITABLE_SUFFIXES:
+            raise UsageError(f"{target}: --form core writes several files; name a folder")
+        check_folder(target)
+        source = read_source(options.source, options.depth, options.from_dialect, material, frames=True)
+        files = _write_core(source, target, options.config, options.size or PREVIEW_SIZE)
     else:
         if options.config is not None or options.size is not None:
             raise UsageError("--config and --size are of --form core; add that, or leave them out")
-        if options.target.suffix.lower() not in voxrt.WRITABLE_SUFFIXES:
-            raise UsageError(f"{options.target}: is not a format to write; name one of {', '.join(voxrt.WRITABLE_SUFFIXES)}")
-        check_folder(options.target.parent)
-        whole = options.target.suffix.lower() in WORD_WRITERS
-        read = read_source(options.source, options.depth, options.from_dialect, _colours(options.material), frames=whole)
-        files = voxrt.convert(read.blob, options.target, dialect=options.dialect)
+        if target.suffix.lower() not in voxrt.WRITABLE_SUFFIXES:
+            raise UsageError(f"{target}: is not a format to write; name one of {', '.join(voxrt.WRITABLE_SUFFIXES)}")
+        check_folder(target.parent)
+        has_frames = target.suffix.lower() in WORD_WRITERS
+        source = read_source(options.source, options.depth, options.from_dialect, material, frames=has_frames)
+        files = voxrt.convert(source.blob, target, dialect=options.dialect)
     if options.reporting.json:
-        print_json(ConvertResult([name_file(file) for file in files], warning_entries(read.warnings)))
+        print_json(ConvertResult([name_file(file) for file in files], warning_entries(source.warnings)))
     else:
         summarize(f"{options.source.name}:", [("wrote", str(file)) for file in files])
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from voxrt.cli.inputs.source import read_source
+from voxrt.cli.results.build_results import print_json
 from voxrt.cli.results.memory_results import info_result
 from voxrt.cli.terminal.messages import frames_row, summarize, tabulate
-from voxrt.cli.results.build_results import print_json
-from voxrt.cli.inputs.source import read_source
 
 if TYPE_CHECKING:
     from voxrt.options.memory_commands import InfoCommand

@@ -69,8 +69,10 @@ def _options(command: RenderCommand, lighting: Lighting) -> RenderOptions:
             raise UsageError("--lod does not go with --light or --bounces; leave them or --lod out")
         lighting = _unlit(lighting, "--lod goes without light and mirrors")
     config = command.config or ("cached1" if command.lod else "lit" if lighting.features else "tiny")
-    if command.engine == "rtl" and not (command.config is None or command.lod or is_lit) and (
-        lighting.features - voxrt.shader_features(config)
+    if (
+        command.engine == "rtl"
+        and not (command.config is None or command.lod or is_lit)
+        and (lighting.features - voxrt.shader_features(config))
     ):
         lighting = _unlit(lighting, f"{config} has none, --config lit does")
     return RenderOptions(

@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING
 
 import voxrt
 from voxrt.cli.results.board_results import ServeResult
+from voxrt.cli.results.build_results import print_json
 from voxrt.cli.terminal.errors import UsageError
 from voxrt.cli.terminal.messages import summarize
-from voxrt.cli.results.build_results import print_json
 
 if TYPE_CHECKING:
-    from voxrt.options.board_commands import ServeCommand
     from voxrt.board.designs.serial_device import SerialDevice
     from voxrt.board.device import Device
     from voxrt.board.scene import Scene
+    from voxrt.options.board_commands import ServeCommand
     from voxrt.serve.scene_library import SceneLibrary
     from voxrt.serve.server import FrameServer
     from voxrt.serve.server_options import ServerOptions

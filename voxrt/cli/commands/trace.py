@@ -4,31 +4,43 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from voxrt.cli.terminal.errors import UsageError
-from voxrt.cli.results.memory_results import trace_result
-from voxrt.cli.terminal.messages import summarize, tabulate
-from voxrt.cli.results.build_results import print_json
+from voxrt.cli.inputs.lighting import merge_lighting
 from voxrt.cli.inputs.source import read_source
-from voxrt.options.build_options import PREVIEW_SIZE
-from voxrt.sim import follow_pixel
+from voxrt.cli.results.build_results import print_json
+from voxrt.cli.results.memory_results import ColourEntry, SurfaceEntry, colour_entry, trace_result
+from voxrt.cli.terminal.errors import UsageError
+from voxrt.cli.terminal.messages import summarize, tabulate
+from voxrt.sim import explain_colour, follow_pixel
 from voxrt.view.ray_table import HEADS, describe_end, describe_root, ray_table
 
 if TYPE_CHECKING:
+    from voxrt.octree import Rom
     from voxrt.options.picture_commands import TraceCommand
+    from voxrt.sim import PixelColour
+
+_LIGHTS = {
+    "lit": "shines on it",
+    "turned away": "is behind it: its side is turned away",
+    "shadowed": "does not reach it: a solid stands between, so it is in shadow",
+}
 
 
 def run(options: TraceCommand) -> None:
-    """Print the path of one pixel's ray through the octree: each word that it reads, in order."""
-    check_pixel(options.pixel, options.size)
+    """Print the path of one pixel's ray through the octree, and how the pixel gets its colour."""
+    pixel, size = options.pixel, options.size
+    check_pixel(pixel, size)
     source = read_source(options.scene, options.depth)
-    camera = source.camera(options.size, options.sight)
-    path = follow_pixel(source.rom.octree, camera, options.size, options.pixel)
+    camera = source.camera(size, options.sight)
+    path = follow_pixel(source.rom.octree, camera, size, pixel)
+    lighting = merge_lighting(source.blob.lighting, options.lighting)
+    colour = explain_colour(source.rom, path, lighting)
+    entry = colour_entry(source.rom, colour, lighting)
     if options.reporting.json:
-        print_json(trace_result(camera, options.size, options.pixel, path))
+        print_json(trace_result(camera, size, pixel, path, entry))
         return
     x, y, z = (f"{value / 16:g}" for value in path.origin)
     summarize(
-        f"{options.scene.name}, pixel {options.pixel[0]},{options.pixel[1]} of {options.size[0]}x{options.size[1]}:",
+        f"{options.scene.name}, pixel {pixel[0]},{pixel[1]} of {size[0]}x{size[1]}:",
         [
             ("ray", f"from voxel {x}, {y}, {z} along {', '.join(map(str, path.direction))}"),
             ("root", describe_root(source.rom, path)),
@@ -39,6 +51,34 @@ def run(options: TraceCommand) -> None:
     )
     if path.readings:
         tabulate(HEADS, ray_table(source.rom, path), answer=True)
+    summarize("The colour of the pixel:", _colour_rows(source.rom, colour, entry), answer=True)
+
+
+def _colour_rows(rom: Rom, colour: PixelColour, entry: ColourEntry) -> list[tuple[str, str]]:
+    rows = [("mirror", _described(rom, mirror)) for mirror in entry.mirrors]
+    result = "#{:02x}{:02x}{:02x}".format(*colour.colour)
+    surface = colour.surface
+    if surface is None or entry.surface is None:
+        why = "the mean of the mirrors: the ray has no reflections left" if colour.is_mean else "the background"
+        return [*rows, ("colour", f"{result}, {why}")]
+    rows.append(("surface", _described(rom, entry.surface)))
+    if surface.side is None:
+        return [*rows, ("colour", f"{result}, that of the material: the camera stands in it")]
+    if entry.face_brightness is not None:
+        rows.append(
+            ("face", f"{surface.side} has brightness {entry.face_brightness} of 255 (register {surface.register})")
+        )
+    if entry.light in _LIGHTS:
+        rows.append(("light", _LIGHTS[entry.light]))
+    rows.append(("brightness", f"{entry.brightness:.4f}, by the shading {entry.shading}"))
+    return [*rows, ("colour", f"{result}, the material's times the brightness")]
+
+
+def _described(rom: Rom, surface: SurfaceEntry) -> str:
+    x, y, z = surface.voxel
+    side = "from within" if surface.face is None else f"its {surface.face} side"
+    colour = "#{:02x}{:02x}{:02x}".format(*rom.materials[surface.material].colour)
+    return f"voxel {x}, {y}, {z}, {side}: material {surface.material}, {surface.name}, {colour}"
 
 
 def check_pixel(pixel: tuple[int, int], size: tuple[int, int]) -> None:

@@ -6,21 +6,21 @@ import asyncio
 from typing import TYPE_CHECKING, Any
 
 import voxrt
-from voxrt.cli.results.board_results import UploadResult
-from voxrt.cli.terminal.errors import UsageError
+from voxrt.cli.commands.serve import SERIAL, open_device, open_serial_device
 from voxrt.cli.inputs.lighting import supported
+from voxrt.cli.results.board_results import UploadResult
+from voxrt.cli.results.build_results import print_json
+from voxrt.cli.terminal.errors import UsageError
 from voxrt.cli.terminal.messages import summarize
 from voxrt.cli.terminal.progress import transfer_bar
-from voxrt.cli.results.build_results import print_json
-from voxrt.cli.commands.serve import SERIAL, open_device, open_serial_device
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from voxrt.options.board_commands import UploadCommand
     from voxrt.board.device import Device
     from voxrt.board.scene import Scene
     from voxrt.board.scene_memory import LoadedScene, Progress
+    from voxrt.options.board_commands import UploadCommand
 
 
 def run(options: UploadCommand) -> None:

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import voxrt
 from voxrt import octree
 from voxrt import view as drawing
+from voxrt.cli.commands.trace import check_pixel
+from voxrt.cli.inputs.source import Source, read_source
 from voxrt.cli.terminal.errors import UsageError
 from voxrt.cli.terminal.messages import summarize
-from voxrt.cli.inputs.source import Source, read_source
-from voxrt.cli.commands.trace import check_pixel
 from voxrt.options.shared import PREVIEW_SIZE
 from voxrt.outputs import check_folder, writing
 from voxrt.sources.source import as_text
@@ -21,10 +21,10 @@ from voxrt.view.scene_overlay import find_owners, preview_of, scene_triangles
 from voxrt.views.writers import PANE_WRITERS
 
 if TYPE_CHECKING:
-    from voxrt.options.picture_commands import ViewCommand
     from collections.abc import Callable
     from pathlib import Path
 
+    from voxrt.options.picture_commands import ViewCommand
     from voxrt.view import Pane, Preview
 
 _TURNS = 72  # pictures of a turntable

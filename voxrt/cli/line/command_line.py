@@ -66,8 +66,10 @@ def read_options(command: str, arguments: Sequence[str]) -> Any:  # noqa: ANN401
     _refuse_unknown(arguments, named)
     parser = _Parser(add_help_option=False)
     for name, option in named.items():
-        action = {"action": "append_const", "const": ""} if option.kind.is_flag else {"action": "append"}
-        parser.add_option(*flags_of(name, option), dest=name, **action)
+        if option.kind.is_flag:
+            parser.add_option(*flags_of(name, option), dest=name, action="append_const", const="")
+        else:
+            parser.add_option(*flags_of(name, option), dest=name, action="append")
     found, words = parser.parse_args(list(arguments))
     texts: dict[str, list[str]] = {name: getattr(found, name) or [] for name in named}
     for name, option in options.items():
@@ -87,7 +89,9 @@ def _has(name: str, option: Option, texts: dict[str, list[str]]) -> bool:
     """Tell whether an option is on the command line; refuse a command line without one that must be."""
     if not texts[name] and option.default is MISSING:
         flag = flags_of(name, option)[0]
-        raise UsageError(f"{flag} is missing" + ("" if option.group == ARGUMENTS else f"; add {flag} {_metavar(option)}"))
+        raise UsageError(
+            f"{flag} is missing" + ("" if option.group == ARGUMENTS else f"; add {flag} {_metavar(option)}")
+        )
     return bool(texts[name])
 
 

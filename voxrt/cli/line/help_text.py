@@ -36,7 +36,7 @@ def overview() -> str:
 
 
 def command_help(command: str, *, full: bool) -> str:
-    """Return the help of a command: in full, or what fits on a screen: what most people need, and the names of all else."""
+    """Return the help of a command: in full, or where that is long, what most people need and the names of all else."""
     text = _help(command, full=True)
     return text if full or text.count("\n") <= _SCREEN else _help(command, full=False)
 

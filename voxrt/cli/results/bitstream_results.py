@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from voxrt.cli.terminal.messages import name_file
 from voxrt.cli.results.build_results import BudgetEntry, budget_entry
+from voxrt.cli.terminal.messages import name_file
 
 if TYPE_CHECKING:
     from pathlib import Path

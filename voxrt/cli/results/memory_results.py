@@ -9,20 +9,23 @@ from typing import TYPE_CHECKING
 import msgspec
 
 import voxrt
-from voxrt.cli.terminal.messages import name_file
 from voxrt.cli.results.build_results import (  # msgspec resolves the annotations of this module
     CameraEntry,
     WarningEntry,
     camera_entry,
 )
+from voxrt.cli.terminal.messages import name_file
 from voxrt.export.info import BoardInfo, LevelInfo, MaterialInfo  # noqa: TC001
+from voxrt.octree.camera import FACES
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from voxrt.export import Blob
-    from voxrt.octree import Animation
-    from voxrt.sim import Camera, Likeness, RayPath
+    from voxrt.octree import Animation, Rom
+    from voxrt.octree.camera import Lighting
+    from voxrt.sim import Camera, Likeness, PixelColour, RayPath
+    from voxrt.sim.pixel_colour import Surface
     from voxrt.views.depth_likeness import LikenessAtDepth
 
 _AXES = ("x", "y", "z", None)
@@ -161,6 +164,36 @@ class ReadingEntry(msgspec.Struct, frozen=True):
     """Where that was, voxels."""
 
 
+class SurfaceEntry(msgspec.Struct, frozen=True):
+    """A surface that a ray met."""
+
+    material: int
+    name: str
+    """That of the material."""
+    face: str | None
+    """Where the side looks, such as `+y`; null where the camera stands in the solid."""
+    voxel: tuple[int, int, int]
+
+
+class ColourEntry(msgspec.Struct, frozen=True):
+    """How a pixel comes by its colour."""
+
+    rgb: tuple[int, int, int]
+    """The colour: sRGB, 0 to 255, as in the picture."""
+    shading: str
+    """`faces`, `report` or `flat`."""
+    mirrors: list[SurfaceEntry]
+    """The mirrors that reflected the ray, in order."""
+    surface: SurfaceEntry | None
+    """What ended the ray; null if it left the world, or had no reflections left."""
+    face_brightness: int | None
+    """The register of the side's brightness, 0 to 255, with the shading `faces`; else null."""
+    light: str
+    """What the light does on the surface: `none`, `lit`, `turned away` or `shadowed`."""
+    brightness: float | None
+    """Times the colour of the material it is the pixel's; null without a surface."""
+
+
 class TraceResult(msgspec.Struct, frozen=True):
     """``voxrt trace --json``."""
 
@@ -178,9 +211,12 @@ class TraceResult(msgspec.Struct, frozen=True):
     """The axis of the side hit; null at a miss, and from within a solid."""
     voxel: tuple[int, int, int] | None
     """Null at a miss."""
+    colour: ColourEntry
 
 
-def trace_result(camera: Camera, size: tuple[int, int], pixel: tuple[int, int], path: RayPath) -> TraceResult:
+def trace_result(
+    camera: Camera, size: tuple[int, int], pixel: tuple[int, int], path: RayPath, colour: ColourEntry
+) -> TraceResult:
     """Tell programs the way of a ray."""
     return TraceResult(
         pixel=pixel,
@@ -205,6 +241,28 @@ def trace_result(camera: Camera, size: tuple[int, int], pixel: tuple[int, int], 
         material=path.material,
         face=_AXES[path.face],
         voxel=path.cell,
+        colour=colour,
+    )
+
+
+def colour_entry(rom: Rom, colour: PixelColour, lighting: Lighting) -> ColourEntry:
+    """Tell programs how a pixel comes by its colour."""
+
+    def entry(surface: Surface) -> SurfaceEntry:
+        name = rom.materials[surface.material].name
+        return SurfaceEntry(surface.material, name, surface.side, surface.cell)
+
+    surface, register = colour.surface, None
+    if surface is not None and surface.side is not None and lighting.shading == "faces":
+        register = (lighting.faces or FACES)[2 * surface.face + surface.is_upper]
+    return ColourEntry(
+        rgb=colour.colour,
+        shading=lighting.shading,
+        mirrors=[entry(mirror) for mirror in colour.mirrors],
+        surface=None if surface is None else entry(surface),
+        face_brightness=register,
+        light=colour.light,
+        brightness=None if surface is None else float(colour.brightness),
     )
 
 
