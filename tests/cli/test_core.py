@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from voxrt import plain_verilog
+from voxrt.boards import plain_verilog
 from voxrt.rtl.configurations import list_sources, read_configurations
 
 needs_yosys = pytest.mark.skipif(
@@ -76,7 +76,8 @@ def test_interrupted_it_leaves_the_old_file_and_nothing_else(voxrt, monkeypatch,
 
     making = plain_verilog.plain_verilog
     monkeypatch.setattr(
-        "voxrt.cli.commands.core.plain_verilog", lambda each, progress: making(each, progress=interrupt)
+        "voxrt.cli.commands.core.plain_verilog",
+        lambda each, **_: making(each, progress=interrupt),
     )
     before = sorted(Path().iterdir())
     finished = voxrt("core", "--config", "tiny", "--verilog", "tiny.v")

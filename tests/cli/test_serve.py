@@ -120,8 +120,8 @@ def test_a_server_for_others_wants_a_token(folder):
 @pytest.mark.parametrize(
     ("arguments", "code", "said"),
     [
-        (["serve", "--port", "65536"], 2, "--port 65536 is not 0 to 65535"),
-        (["serve", "--depth", "17"], 2, "--depth 17 is not 1 to 16"),
+        (["serve", "--port", "65536"], 2, "--port must be an integer 0 … 65535, not 65536"),
+        (["serve", "--depth", "17"], 2, "--depth must be an integer 1 … 16, not 17"),
         (["serve", "--device", "pynq"], 2, "--device pynq needs the ray tracer's --bitstream"),
         (["serve", "--device", "pynq", "--bitstream", "a.bit"], 5, "this machine has no package pynq"),
         (["serve", "nothing.mem"], 3, "nothing.mem"),

@@ -51,7 +51,8 @@ def test_a_command_imports_what_it_uses(tmp_path, arguments, unwanted):
     code = (
         "import sys\n"
         "before = set(sys.modules)\n"
-        "        f"sys.argv = {['voxrt', *arguments]!r}\n"
+        "from voxrt.cli import main\n"
+        f"sys.argv = {['voxrt', *arguments]!r}\n"
         "try:\n    main()\n"
         f"finally:\n    print(*({unwanted!r} & set(sys.modules)) - before, file=sys.stderr)"
     )
