@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import sys
@@ -11,7 +12,6 @@ from typing import TYPE_CHECKING, NoReturn
 
 import voxrt
 from voxrt.cli.line.command_line import HELP_FLAGS, asks_for_help, find_command, read_options
-from voxrt.cli.line.help_text import command_help, overview
 from voxrt.cli.terminal.errors import UsageError
 from voxrt.cli.terminal.messages import complain, discard_output, print_answer, set_verbosity
 from voxrt.options.commands import COMMANDS
@@ -76,6 +76,8 @@ def run_command(arguments: Sequence[str]) -> None:
         It cannot be understood.
     """
     if not arguments or arguments[0] in HELP_FLAGS:
+        from voxrt.cli.line.help_text import overview  # noqa: PLC0415 - most commands do without
+
         print_answer(overview())
         return
     if arguments[0] in VERSION_FLAGS:
@@ -84,12 +86,18 @@ def run_command(arguments: Sequence[str]) -> None:
     name, *words = arguments
     find_command(name)
     if asks_for_help(words):
+        from voxrt.cli.line.help_text import command_help  # noqa: PLC0415 - as above
+
         print_answer(command_help(name, full=False))
         return
     options = read_options(name, words)
     reporting = getattr(options, "reporting", None)
     set_verbosity(0 if reporting is None else reporting.verbose - reporting.quiet)
-    import_module(f"voxrt.cli.commands.{name}").run(options)
+    command = import_module(f"voxrt.cli.commands.{name}")
+    if not gc.isenabled():
+        gc.freeze()  # what is imported stays: collections need not visit it
+        gc.enable()
+    command.run(options)
 
 
 def _take_signals() -> None:

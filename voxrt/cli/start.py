@@ -6,6 +6,7 @@ traceback. Standard streams that the caller closed are opened again, so that no 
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import sys
@@ -24,6 +25,7 @@ def start(arguments: Sequence[str]) -> NoReturn:
     """Run a command line and exit."""
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
         signal.signal(signal.SIGINT, _leave)
+    gc.disable()  # until the command is imported: imports make many objects and leave none
     _open_closed_streams()
     if arguments[-1:] in _VERSION_FLAGS and arguments[:-1] in ([], ["build"]):
         _print_version()

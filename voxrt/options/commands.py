@@ -2,18 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import MISSING, dataclass
 from importlib import import_module
-from typing import Any
-
-from voxrt.options.kinds import Kind, as_it_is, one_of
-from voxrt.options.option import ARGUMENTS, option
-
-SHELLS = ("bash", "zsh", "fish")
+from typing import Any, NamedTuple
 
 
-@dataclass(frozen=True)
-class Command:
+class Command(NamedTuple):
     """A command.
 
     Attributes
@@ -38,13 +31,6 @@ class Command:
         module, _, name = self.table.partition(":")
         found: type[Any] = getattr(import_module(f"voxrt.options.{module}"), name)
         return found
-
-
-@dataclass(frozen=True, kw_only=True)
-class CompletionCommand:
-    """What ``voxrt completion`` takes."""
-
-    shell: str = option(one_of(SHELLS), MISSING, "The shell.", ARGUMENTS)
 
 
 COMMANDS = {
@@ -111,7 +97,7 @@ COMMANDS = {
     ),
     "completion": Command(
         "Print a script for command-line completion, to be read by a shell at its start.",
-        "commands:CompletionCommand",
+        "shell_commands:CompletionCommand",
         'echo "source <(voxrt completion bash)" >> ~/.bashrc',
     ),
     "diff": Command(
@@ -121,17 +107,8 @@ COMMANDS = {
     ),
     "help": Command(
         "Print the help of a command with all of its options, or that of all commands.",
-        "commands:HelpCommand",
+        "shell_commands:HelpCommand",
         "voxrt help build",
     ),
 }
 """By name, in the order of the help."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class HelpCommand:
-    """What ``voxrt help`` takes."""
-
-    command: str | None = option(
-        Kind("COMMAND", str, as_it_is, choices=tuple(COMMANDS)), None, "The command.", ARGUMENTS
-    )

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from decimal import Decimal
 from math import inf, isfinite
 from os import PathLike
 from typing import TYPE_CHECKING, Literal, TypeAlias
@@ -34,11 +33,11 @@ _POSITION_LIMIT = 1 << 31  # in 1/16 voxel
 _MOST_WORDS = 1 << 31
 _TIMES = "xX\N{MULTIPLICATION SIGN}"
 _UNITS = {
-    "mm": Decimal("0.001"),
-    "cm": Decimal("0.01"),
-    "m": Decimal(1),
-    "in": Decimal("0.0254"),
-    "ft": Decimal("0.3048"),
+    "mm": "0.001",
+    "cm": "0.01",
+    "m": "1",
+    "in": "0.0254",
+    "ft": "0.3048",
 }
 _LENGTH = re.compile(
     rf"([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|[-+]?(?:inf|nan))?\s*({'|'.join(_UNITS)})?", re.IGNORECASE
@@ -46,6 +45,8 @@ _LENGTH = re.compile(
 
 
 def _length(text: str, *, is_unit: bool) -> float:
+    from decimal import Decimal  # noqa: PLC0415 - most command lines do without
+
     found = _LENGTH.fullmatch(text.strip())
     number, unit = found.groups() if found else (None, None)
     if found is None or not (number or (is_unit and unit)):
@@ -54,7 +55,7 @@ def _length(text: str, *, is_unit: bool) -> float:
         )
         raise ValueError(f"{text!r} is not a number{units}")
     try:
-        return float(Decimal(number or 1) * _UNITS[unit.lower() if unit else "m"])
+        return float(Decimal(number or 1) * Decimal(_UNITS[unit.lower() if unit else "m"]))
     except ArithmeticError:
         return inf
 
@@ -114,6 +115,8 @@ REGISTER = Kind("X,Y,Z", _triple(read_whole, "three whole numbers such as 0,0,-9
 
 
 def _sixteenths(text: str) -> int:
+    from decimal import Decimal  # noqa: PLC0415
+
     try:
         value = Decimal(text) * 16
     except ArithmeticError:
@@ -225,6 +228,8 @@ SKY = Kind("STRENGTH|COLOUR", _read_sky, _check_sky)
 
 
 def _read_bytes(text: str) -> int:
+    from decimal import Decimal  # noqa: PLC0415
+
     found = re.fullmatch(r"(\d+(?:\.\d+)?)\s*([KMGT]?)(?:i?B)?", text.strip(), re.IGNORECASE)
     if found is None:
         raise ValueError(f"{text!r} is not a size such as 4G or 512M")

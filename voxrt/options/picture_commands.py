@@ -24,14 +24,13 @@ from voxrt.options.shared import (
     SCHEDULER,
     SIZE,
     WORKERS,
-    CameraOptions,
     Colour,
     Dialect,
     Engine,
-    LightOptions,
     MessageOptions,
     ReportOptions,
 )
+from voxrt.options.view_options import CameraOptions, LightOptions
 
 _CLOCKS = Kind("CLOCKS", INTEGER.read, as_it_is)
 _OCTANTS, _PATH, _DETAIL = "Octants", "A path of cameras", "Level of detail"

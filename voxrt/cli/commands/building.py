@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from time import perf_counter
 from typing import TYPE_CHECKING
 
 import voxrt
+from voxrt.building.pipeline import build
 from voxrt.cli.terminal.budget_messages import budget_loss, budget_text
 from voxrt.cli.terminal.errors import UsageError
 from voxrt.cli.terminal.messages import frames_row, picture_cost, summarize, tabulate, warn
@@ -25,7 +25,6 @@ _NAMED = 32  # so many materials still read as a list
 def build_all(command: BuildCommand) -> None:
     """Build assets one after another, or the animation of all, and say what was made."""
     reports = []
-    import_module("voxrt.building.pipeline")  # a part of the start
     waited = process_age()
     for asset in command.assets if command.frames is None else command.assets[:1]:
         begun = perf_counter()
@@ -75,7 +74,7 @@ def _build(asset: Path, command: BuildCommand) -> voxrt.BuildResult:
     assets, frames, output, options = command.assets, command.frames, command.output, command.options
     with build_bar() as bar:
         if frames is None:
-            return voxrt.build(asset, output, options, progress=bar.begin, estimated=bar.estimate, clustered=bar.tiles)
+            return build(asset, output, options, progress=bar.begin, estimated=bar.estimate, clustered=bar.tiles)
         made: Path | list[Path] = asset
         if frames == "files" and (len(assets) > 1 or not asset.is_dir()):
             from voxrt.building.animation_takes import natural_order  # noqa: PLC0415 - NumPy comes with it

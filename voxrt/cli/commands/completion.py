@@ -8,7 +8,7 @@ from voxrt.cli.line.completion_script import completion_script
 from voxrt.cli.terminal.messages import print_answer
 
 if TYPE_CHECKING:
-    from voxrt.options.commands import CompletionCommand
+    from voxrt.options.shell_commands import CompletionCommand
 
 
 def run(options: CompletionCommand) -> None:

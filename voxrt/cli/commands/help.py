@@ -9,7 +9,7 @@ from voxrt.cli.line.help_text import command_help, overview
 from voxrt.cli.terminal.messages import print_answer
 
 if TYPE_CHECKING:
-    from voxrt.options.commands import HelpCommand
+    from voxrt.options.shell_commands import HelpCommand
 
 
 def run(options: HelpCommand) -> None:

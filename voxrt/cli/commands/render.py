@@ -14,7 +14,7 @@ from voxrt.cli.terminal.errors import UsageError
 from voxrt.cli.terminal.messages import cache_cost, picture_cost, summarize, warn
 from voxrt.octree import with_means
 from voxrt.options.render_options import RenderOptions
-from voxrt.options.shared import CameraOptions
+from voxrt.options.view_options import CameraOptions
 
 if TYPE_CHECKING:
     from voxrt import Frame, Lighting

@@ -11,7 +11,7 @@ from voxrt.cli.terminal.messages import warn
 if TYPE_CHECKING:
     from collections.abc import Set as AbstractSet
 
-    from voxrt.options.shared import LightOptions
+    from voxrt.options.view_options import LightOptions
 
 
 def supported(lighting: voxrt.Lighting, features: AbstractSet[str]) -> voxrt.Lighting:

@@ -9,7 +9,8 @@ import voxrt
 from voxrt.cli.terminal.messages import warn
 from voxrt.cli.terminal.progress import build_bar
 from voxrt.octree.camera import refit
-from voxrt.options.shared import PREVIEW_SIZE, CameraOptions
+from voxrt.options.shared import PREVIEW_SIZE
+from voxrt.options.view_options import CameraOptions
 from voxrt.views.viewpoint import authored_camera
 from voxrt.voxelize.assets import SUFFIXES
 

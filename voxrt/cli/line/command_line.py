@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 from dataclasses import MISSING
-from difflib import get_close_matches
 from optparse import OptionParser
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -132,6 +131,8 @@ def _refuse_unknown(arguments: Sequence[str], options: dict[str, Option]) -> Non
 
 
 def _perhaps(word: str, words: Iterable[str]) -> str:
+    from difflib import get_close_matches  # noqa: PLC0415 - for what is wrong alone
+
     near = get_close_matches(word, words, 1)
     return f"; did you mean {near[0]}" if near else ""
 
