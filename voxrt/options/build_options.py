@@ -6,10 +6,10 @@ this module imports no heavy library.
 
 from __future__ import annotations
 
-from collections.abc import Sequence  # type hints are read at run time
+from collections.abc import Mapping, Sequence  # type hints are read at run time
 from dataclasses import dataclass
 from os import PathLike
-from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
+from typing import Literal, TypeAlias, get_args
 
 from voxrt.options import notations
 from voxrt.options.kinds import FLAG, one_of, real, text, texts, whole
@@ -30,9 +30,6 @@ from voxrt.options.shared import (
     Engine,
 )
 
-if TYPE_CHECKING:
-    from voxrt.options.keywords import BuildKeywords
-
 Fill: TypeAlias = Literal["solid", "surface", "auto"]
 Geometry: TypeAlias = Literal["auto", "render", "collider"]
 Pow2: TypeAlias = Literal["box", "none"]
@@ -44,6 +41,8 @@ DEFAULT_DEPTH = 7
 GRID, CONTENT, COLOUR, PREVIEW = "Grid", "What is voxelized", "Colours and light", "Preview"
 
 
+# A table: an option is its kind, its default and its group, then its text.
+# fmt: off
 @documented
 @dataclass(frozen=True, kw_only=True)
 class BuildOptions:
@@ -67,227 +66,101 @@ class BuildOptions:
     ValueError: engine must be 'rtl' or 'model', not 'gpu'
     """
 
-    depth: int | None = DEPTH.field(
+    depth: int | None = DEPTH.field(group=GRID,
         help="Levels of the octree, 1 to 16. The default is 7, unless {voxel_size} is given.",
-        details="The grid has 2**depth voxels per side.",
-        group=GRID,
-    )
-    voxel_size: float | None = option(
-        notations.LENGTH,
-        None,
+        details="The grid has 2**depth voxels per side.")
+    voxel_size: float | None = option(notations.LENGTH, None, GRID,
         "Side of a voxel in metres; on the command line also with a unit, such as 5cm.",
-        GRID,
-        details="Give this or {depth}, not both.",
-    )
-    fill: Fill = option(
-        one_of(get_args(Fill)),
-        "auto",
-        "solid: fill what surfaces enclose, small holes or not. surface: keep only the shell. auto, the default: as "
-        "solid, but keep only the shell of open pieces.",
-        CONTENT,
+        details="Give this or {depth}, not both.")
+    fill: Fill = option(one_of(get_args(Fill)), "auto", CONTENT,
+        "solid: fill what surfaces enclose, small holes or not. surface: keep only the shell. auto, the default: "
+        "as solid, but keep only the shell of open pieces.",
         details="Open are pieces whose openings exceed 5 % of their area together, such as clothes.",
-        manifest="always",
-    )
-    interior: int | str = option(
-        notations.INTERIOR,
-        "keep",
+        manifest="always")
+    interior: int | str = option(notations.INTERIOR, "keep", CONTENT,
         "Material of the hidden voxels: those that no ray from outside can reach. keep: the material of their "
         "object. any: for each the material that makes the memory smallest. The name or the id of a material: that "
-        "material for all of them.",
-        CONTENT,
-        is_rare=True,
-        manifest="always",
-    )
-    geometry: Geometry = option(
-        one_of(get_args(Geometry)),
-        "auto",
+        "material for all of them.", is_rare=True, manifest="always")
+    geometry: Geometry = option(one_of(get_args(Geometry)), "auto", CONTENT,
         "What is voxelized. auto: the colliders of an object if it has any, else its triangles. render: always the "
         "triangles. collider: always colliders; an object without one becomes its bounding box.",
-        CONTENT,
-        is_rare=True,
-        manifest="always",
-    )
-    pow2: Pow2 = option(
-        one_of(get_args(Pow2)),
-        "box",
-        "box: round the sides of box colliders up to powers of two voxels, which saves memory. none: keep them as they "
-        "are.",
-        CONTENT,
-        is_rare=True,
-        manifest="always",
-    )
-    up: UpAxis | None = option(
-        one_of(get_args(UpAxis)),
-        None,
+        is_rare=True, manifest="always")
+    pow2: Pow2 = option(one_of(get_args(Pow2)), "box", CONTENT,
+        "box: round the sides of box colliders up to powers of two voxels, which saves memory. none: keep them as "
+        "they are.", is_rare=True, manifest="always")
+    up: UpAxis | None = option(one_of(get_args(UpAxis)), None, CONTENT,
         "The up axis of an asset whose format does not state it (OBJ, STL, PLY). The default is y.",
-        CONTENT,
-        is_rare=True,
-        manifest="always",
-    )
-    unit: float | None = option(
-        notations.UNIT,
-        None,
+        is_rare=True, manifest="always")
+    unit: float | None = option(notations.UNIT, None, CONTENT,
         "Metres per unit of an asset whose format does not state it (OBJ, STL, PLY). The default is 1.",
-        CONTENT,
-        details="On the command line also the name of the unit: mm, cm, m, in or ft.",
-        manifest="always",
-    )
-    time: float | None = option(
-        real("SECONDS"),
-        None,
-        "Second of the animation at which the asset is built (glTF, USD).",
-        CONTENT,
-        is_rare=True,
-        manifest="always",
-    )
-    animation: str | None = option(
-        text("NAME"),
-        None,
+        details="On the command line also the name of the unit: mm, cm, m, in or ft.", manifest="always")
+    time: float | None = option(real("SECONDS"), None, CONTENT,
+        "Second of the animation at which the asset is built (glTF, USD).", is_rare=True, manifest="always")
+    animation: str | None = option(text("NAME"), None, CONTENT,
         "The animation to use, by name or by number, counted from 0 (glTF). The default is the first.",
-        CONTENT,
-        is_rare=True,
-        manifest="always",
-    )
-    variants: Sequence[str] = option(
-        texts("NAME"),
-        (),
+        is_rare=True, manifest="always")
+    variants: Sequence[str] = option(texts("NAME"), (), CONTENT,
         "Variants to build: the name of a material variant (glTF), or any number of /prim/path:set=variant (USD).",
-        CONTENT,
-        flags=("--variant",),
-        is_rare=True,
-        manifest="always",
-    )
-    colours: int = option(
-        whole(1, 254, "K"),
-        32,
+        flags=("--variant",), is_rare=True, manifest="always")
+    colours: int = option(whole(1, 254, "K"), 32, COLOUR,
         "The largest number of materials made of textures and vertex colours, 1 to 254.",
-        COLOUR,
-        details="Materials of one colour are not counted and keep their colour.",
-        manifest="always",
-    )
-    bake: bool = option(
-        FLAG,
-        False,
-        "Bake light: every voxel at the surface gets the colour that it has under the sun and the sky. The memory is "
-        "then shown flat, with up to 254 colours.",
-        COLOUR,
-        is_rare=True,
-        manifest="always",
-    )
-    sun: tuple[float, float, float] = option(
-        notations.DIRECTION,
-        (1.0, 3.0, 2.0),
-        "With {bake}: the direction towards the sun, x, y and z. Zeros for no sun.",
-        COLOUR,
-        is_rare=True,
-    )
-    sky: float | str = option(
-        notations.SKY,
-        0.4,
+        details="Materials of one colour are not counted and keep their colour.", manifest="always")
+    bake: bool = option(FLAG, False, COLOUR,
+        "Bake light: every voxel at the surface gets the colour that it has under the sun and the sky. The memory "
+        "is then shown flat, with up to 254 colours.", is_rare=True, manifest="always")
+    sun: tuple[float, float, float] = option(notations.DIRECTION, (1.0, 3.0, 2.0), COLOUR,
+        "With {bake}: the direction towards the sun, x, y and z. Zeros for no sun.", is_rare=True)
+    sky: float | str = option(notations.SKY, 0.4, COLOUR,
         "With {bake}: the light of the sky, as a strength such as 0.4 or as a colour such as #9db4d0. The sun has "
-        "0.65.",
-        COLOUR,
-        is_rare=True,
-    )
-    bake_samples: int = option(
-        whole(1, 4096), 64, "With {bake}: rays to the sky per voxel, 1 to 4096.", COLOUR, is_rare=True
-    )
-    ignore: Sequence[str] = option(
-        texts("NAME"),
-        (),
+        "0.65.", is_rare=True)
+    bake_samples: int = option(whole(1, 4096), 64, COLOUR,
+        "With {bake}: rays to the sky per voxel, 1 to 4096.", is_rare=True)
+    ignore: Sequence[str] = option(texts("NAME"), (), CONTENT,
         "Names of objects to leave out. A prim path of a USD file leaves out all below it, too.",
-        CONTENT,
-        is_rare=True,
-        manifest="changed",
-    )
-    bounds: tuple[float, float, float, float, float, float] | None = option(
-        notations.CORNERS,
-        None,
-        "The lowest and the highest corner of what the grid holds, in metres of the scene: x, y, z, x, y, z. What lies "
-        "outside the grid is cut off. The default is the bounds of all objects.",
-        GRID,
-        is_rare=True,
-        manifest="changed",
-    )
-    budget: int | str | None = option(
-        notations.BUDGET,
-        None,
+        is_rare=True, manifest="changed")
+    bounds: tuple[float, float, float, float, float, float] | None = option(notations.CORNERS, None, GRID,
+        "The lowest and the highest corner of what the grid holds, in metres of the scene: x, y, z, x, y, z. What "
+        "lies outside the grid is cut off. The default is the bounds of all objects.",
+        is_rare=True, manifest="changed")
+    budget: int | str | None = option(notations.BUDGET, None, MEMORY,
         "The largest size of the memory, in words.",
-        MEMORY,
         details="Detail that is seen least is given up until the memory fits.",
-        python="In Python, also the name of a board: its memory is the budget.",
-    )
-    dialect: Dialect = DIALECT.field(
-        default="report",
+        python="In Python, also the name of a board: its memory is the budget.")
+    dialect: Dialect = DIALECT.field(default="report", is_rare=True,
         help="How the .mem file encodes materials. report: for the hardware of this project. seed-rtl: for the "
-        "published bitstreams of the original system. msb: for its C++ program. lod: that of {lod}.",
-        is_rare=True,
-    )
-    lod: bool = option(
-        FLAG,
-        False,
+        "published bitstreams of the original system. msb: for its C++ program. lod: that of {lod}.")
+    lod: bool = option(FLAG, False, MEMORY,
         "Level of detail: write mean materials too, in the dialect lod. Then pictures of far views can be rendered "
-        "with fewer words.",
-        MEMORY,
-        is_rare=True,
-    )
-    preview: str | PathLike[str] | bool = option(
-        notations.PREVIEW,
-        False,
+        "with fewer words.", is_rare=True)
+    preview: str | PathLike[str] | bool = option(notations.PREVIEW, False, PREVIEW,
         "Render a picture of the whole scene to the given PNG file, or to NAME.preview.png in the output folder.",
-        PREVIEW,
         details="It has the scene's own light if there is one.",
-        python="In Python, True asks for NAME.preview.png.",
-    )
+        python="In Python, True asks for NAME.preview.png.")
     size: tuple[int, int] = SIZE.field(help="Width and height of the preview in pixels.", group=PREVIEW, is_rare=True)
-    camera: str | None = option(
-        text("NAME"),
-        None,
+    camera: str | None = option(text("NAME"), None, PREVIEW,
         "The author's camera for the preview and for boards, by name or by number, counted from 0 (glTF, USD). The "
         "default is the first. Without one, pictures show the whole scene from the front right and above.",
-        PREVIEW,
-        is_rare=True,
-    )
-    samples: int = SAMPLES.field(
-        help="Rays per pixel of the preview on each axis: 1, 2 or 4. More than one smooths the edges.",
-        group=PREVIEW,
-        is_rare=True,
-    )
-    background: str | tuple[int, int, int] | None = BACKGROUND.field(
-        help="The background of the preview: light, dark, transparent, or a colour such as #204060. The default is the "
-        "background of the scene.",
-        group=PREVIEW,
-        is_rare=True,
-    )
-    engine: Engine = ENGINE.field(
-        help="What renders the preview. rtl: the verilated hardware, which counts its clock cycles. model: the exact "
-        "C++ model, which is faster. Both give the same pixels.",
-        group=PREVIEW,
-        is_rare=True,
-    )
-    strict: bool = option(FLAG, False, "Refuse an asset that would otherwise cause a warning.", RUNNING, is_rare=True)
-    allow_empty: bool = option(FLAG, False, "Accept a memory without a single solid voxel.", RUNNING, is_rare=True)
+        is_rare=True)
+    samples: int = SAMPLES.field(group=PREVIEW, is_rare=True,
+        help="Rays per pixel of the preview on each axis: 1, 2 or 4. More than one smooths the edges.")
+    background: str | tuple[int, int, int] | None = BACKGROUND.field(group=PREVIEW, is_rare=True,
+        help="The background of the preview: light, dark, transparent, or a colour such as #204060. The default is "
+        "the background of the scene.")
+    engine: Engine = ENGINE.field(group=PREVIEW, is_rare=True,
+        help="What renders the preview. rtl: the verilated hardware, which counts its clock cycles. model: the "
+        "exact C++ model, which is faster. Both give the same pixels.")
+    strict: bool = option(FLAG, False, RUNNING, "Refuse an asset that would otherwise cause a warning.", is_rare=True)
+    allow_empty: bool = option(FLAG, False, RUNNING, "Accept a memory without a single solid voxel.", is_rare=True)
     allow_outside: bool = ALLOW_OUTSIDE.field(is_rare=True)
-    threads: int = option(
-        whole(0, 1024),
-        0,
-        "Threads of the native stages; 0 takes one per core. The result does not depend on it.",
-        None,
-    )
-    memory: int | None = option(
-        notations.BYTES,
-        None,
+    threads: int = option(whole(0, 1024), 0, None,
+        "Threads of the native stages; 0 takes one per core. The result does not depend on it.")
+    memory: int | None = option(notations.BYTES, None, RUNNING,
         "Bytes that a build may take, such as 4G on the command line; the default is half of what is free. Larger "
         "scenes are voxelized in tiles, squares of columns. Their octrees go to the folder NAME.tiles beside the "
-        "output and are joined there to the same result; a build that was killed goes on from them.",
-        RUNNING,
-        is_rare=True,
-    )
-    scheduler: str | None = SCHEDULER.field(
+        "output and are joined there to the same result; a build that was killed goes on from them.", is_rare=True)
+    scheduler: str | None = SCHEDULER.field(is_rare=True,
         help="Build on the cluster of this Dask scheduler, such as tcp://host:8786. Its workers open the asset and "
-        "write tiles at the same paths as this machine. Needs the extra cluster.",
-        is_rare=True,
-    )
+        "write tiles at the same paths as this machine. Needs the extra cluster.")
     workers: int | None = WORKERS.field(help="Build by so many processes of this machine, 1 to 1024.", is_rare=True)
 
     def __post_init__(self) -> None:
@@ -302,7 +175,7 @@ class BuildOptions:
         check_options(self)
 
 
-def merge_options(function: str, options: BuildOptions | None, keywords: BuildKeywords) -> BuildOptions:
+def merge_options(function: str, options: BuildOptions | None, keywords: Mapping[str, object]) -> BuildOptions:
     """Return options with the keywords of a call in their place.
 
     Parameters

@@ -260,30 +260,22 @@ BUDGET = Kind("WORDS", read_whole, _check_budget)
 """A number of memory words; in Python also the name of a board."""
 
 
-def _board(names: Callable[[], Iterable[str]]) -> Kind:
-    def read(text: str) -> str:
-        found = {plain(name): name for name in names()}
-        if plain(text) not in found:
-            raise ValueError(f"no board {text!r}; there are {', '.join(sorted(found.values()))}")
-        return found[plain(text)]
-
-    return Kind("NAME", read, as_it_is)
+def find_board(text: str, boards: Iterable[str]) -> str:
+    """Return the board of a name, however that is spelled."""
+    found = {plain(name): name for name in boards}
+    if plain(text) not in found:
+        raise ValueError(f"no board {text!r}; there are {', '.join(sorted(found.values()))}")
+    return found[plain(text)]
 
 
-def _memories() -> Iterable[str]:
+def _read_board(text: str) -> str:
     from voxrt.octree import BOARDS  # noqa: PLC0415
 
-    return BOARDS
+    return find_board(text, BOARDS)
 
 
-def _designs() -> Iterable[str]:
-    from voxrt.boards.bitstream import board_names  # noqa: PLC0415
-
-    return board_names()
-
-
-BOARD_MEMORY, BOARD_DESIGN = _board(_memories), _board(_designs)
-"""Boards whose memory is a budget, and boards that a bitstream is made for."""
+BOARD = Kind("NAME", _read_board, as_it_is)
+"""A board whose memory is a budget."""
 
 
 def _check_interior(name: str, value: object) -> int | str:

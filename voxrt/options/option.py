@@ -32,12 +32,12 @@ class Option:
         The values that it takes.
     default
         Its default; :data:`dataclasses.MISSING` if it must be given.
+    group
+        Its heading in the help; None for an option of the Python API alone.
     help
         What it does, in a sentence or two. ``{name}`` stands for another option, however that is spelled.
     details
         What else there is to say: the short help of a command leaves it out.
-    group
-        Its heading in the help; None for an option of the Python API alone.
     flags
         Its names on the command line; without them, the name of the field with dashes.
     metavar
@@ -52,8 +52,8 @@ class Option:
 
     kind: Kind
     default: Any
-    help: str
     group: str | None
+    help: str
     details: str = ""
     flags: tuple[str, ...] = ()
     metavar: str = ""
@@ -76,9 +76,9 @@ class Option:
         return None if value is None and self.default is None else self.kind.check(name, value)
 
 
-def option(kind: Kind, default: Any, text: str, group: str | None, **more: Any) -> Any:  # noqa: ANN401
+def option(kind: Kind, default: Any, group: str | None, text: str, **more: Any) -> Any:  # noqa: ANN401
     """Make the field of a dataclass that is an option: the attributes of :class:`Option`."""
-    return Option(kind, default, text, group, **more).field()
+    return Option(kind, default, group, text, **more).field()
 
 
 def nested(table: Callable[[], object]) -> Any:  # noqa: ANN401

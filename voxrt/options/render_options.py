@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from voxrt.sim import Background, Dram
 
 
+# A table: an option is its kind, its default and its group, then its text.
+# fmt: off
 @documented
 @dataclass(frozen=True, kw_only=True)
 class RenderOptions:
@@ -33,35 +35,19 @@ class RenderOptions:
     size: tuple[int, int] = SIZE.field()
     engine: Engine = ENGINE.field()
     config: str = CONFIG.field(default="tiny")
-    lighting: Lighting | None = option(
-        ANYTHING,
-        None,
+    lighting: Lighting | None = option(ANYTHING, None, None,
         "Brightness of faces, light and mirrors. For light and mirrors the hardware needs a configuration that has "
-        "them. None takes the default brightness of faces.",
-        None,
-    )
+        "them. None takes the default brightness of faces.")
     samples: int = SAMPLES.field()
     background: Background | str | None = BACKGROUND.field()
-    threads: int = option(ANYTHING, 0, "Threads of the model; 0 takes one per core.", None)
-    dram: Dram | None = option(
-        ANYTHING,
-        None,
-        "The external memory of a configuration that has caches. None takes the default of voxrt.sim.Dram.",
-        None,
-    )
-    root: int = option(
-        ANYTHING,
-        0,
-        "The word of the memory that is the root of what is rendered; 0 but for the frames of an animation.",
-        None,
-    )
-    lod: float = option(
-        ANYTHING,
-        0.0,
-        "Level of detail: the width in pixels of the widest cell that rays stop at; True is 1. 0: they go down to the "
-        "leaves. The memory is built with lod=True.",
-        None,
-    )
+    threads: int = option(ANYTHING, 0, None, "Threads of the model; 0 takes one per core.")
+    dram: Dram | None = option(ANYTHING, None, None,
+        "The external memory of a configuration that has caches. None takes the default of voxrt.sim.Dram.")
+    root: int = option(ANYTHING, 0, None,
+        "The word of the memory that is the root of what is rendered; 0 but for the frames of an animation.")
+    lod: float = option(ANYTHING, 0.0, None,
+        "Level of detail: the width in pixels of the widest cell that rays stop at; True is 1. 0: they go down to "
+        "the leaves. The memory is built with lod=True.")
 
     def __post_init__(self) -> None:
         check_options(self)

@@ -9,17 +9,18 @@ from voxrt.options.kinds import Kind, as_it_is, one_of
 from voxrt.options.option import ARGUMENTS, option
 
 
+# A table: an option is its kind, its default and its group, then its text.
+# fmt: off
 @dataclass(frozen=True, kw_only=True)
 class CompletionCommand:
     """What ``voxrt completion`` takes."""
 
-    shell: str = option(one_of(("bash", "zsh", "fish")), MISSING, "The shell.", ARGUMENTS)
+    shell: str = option(one_of(("bash", "zsh", "fish")), MISSING, ARGUMENTS, "The shell.")
 
 
 @dataclass(frozen=True, kw_only=True)
 class HelpCommand:
     """What ``voxrt help`` takes."""
 
-    command: str | None = option(
-        Kind("COMMAND", str, as_it_is, choices=tuple(COMMANDS)), None, "The command.", ARGUMENTS
-    )
+    command: str | None = option(Kind("COMMAND", str, as_it_is, choices=tuple(COMMANDS)), None, ARGUMENTS,
+        "The command.")

@@ -17,6 +17,7 @@ from voxrt.cli.terminal.budget_messages import budget_loss, budget_text
 from voxrt.cli.terminal.errors import UsageError
 from voxrt.cli.terminal.messages import summarize, warn
 from voxrt.cli.terminal.progress import build_bar, stage_bar, transfer_bar
+from voxrt.options.notations import find_board
 from voxrt.outputs import check_folder, writing
 
 if TYPE_CHECKING:
@@ -28,14 +29,18 @@ if TYPE_CHECKING:
 def run(options: BitstreamCommand) -> None:
     """Make the bitstream of a board that shows a scene, turning, on its monitor."""
     from voxrt.boards.beam import SCREEN, SMALL, fit_beam, fit_frames  # noqa: PLC0415
-    from voxrt.boards.bitstream import load_bitstream, make_bitstream  # noqa: PLC0415 - NumPy comes with it
+    from voxrt.boards.bitstream import board_names, load_bitstream, make_bitstream  # noqa: PLC0415 - NumPy comes with it
     from voxrt.boards.board_scenes import board_scene  # noqa: PLC0415
     from voxrt.views.orbit import orbit  # noqa: PLC0415
 
     if options.seed is not None and not options.rebuild:
         raise UsageError("--seed is of the placement, which --rebuild makes; give both")
     check_folder(options.output)
-    placed = _place(options.board, options.seed, rebuild=options.rebuild)
+    try:
+        board = find_board(options.board, board_names())
+    except ValueError as error:
+        raise UsageError(f"--board: {error}") from error
+    placed = _place(board, options.seed, rebuild=options.rebuild)
     design = placed.design
     blob, budget = read_memory(options.source, options.depth, placed)
     features = {name for name in ("light", "mirrors") if design.core[name.capitalize()]}
