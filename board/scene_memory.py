@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from .errors import DeviceError, Refused
-from .scene import EMPTY_LEAF, check_memory, relocate
+from voxrt.board.errors import DeviceError, Refused
+from voxrt.board.scene import EMPTY_LEAF, check_memory, relocate
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from .device import Device
-    from .scene import Scene
+    from voxrt.board.device import Device
+    from voxrt.board.scene import Scene
 
 _BURST = 4096  # words per step, at least
 _STEPS = 256  # to write a scene, at most: a frame may come between two

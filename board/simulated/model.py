@@ -7,16 +7,19 @@ import time
 from typing import TYPE_CHECKING
 
 import numpy as np
+
 from voxrt.board.device import Counters, Frame, Identity
 from voxrt.board.errors import DeviceError, FrameDropped, TooSlow
 from voxrt.board.scene import EMPTY_LEAF, octree_span
 from voxrt.board.view import FEATURES
+from voxrt.octree.words import move_pointers
 from voxrt.sim import _model
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import NDArray
+
     from voxrt.board.frame_drop import FrameDrop
     from voxrt.board.view import View
 
@@ -53,7 +56,7 @@ class _Memory:
         """Return the selected octree, moved so that its root is word 0 and its first block follows."""
         first, end = octree_span(self._words, self.root, self.depth)
         words = np.concatenate([self._words[self.root : self.root + 1], self._words[first:end]])
-        return np.where(words >> 31 == 0, words - np.uint32(first - 1), words)
+        return move_pointers(words, 1 - first)
 
     def _check(self, address: int, count: int) -> int:
         if not 0 <= address <= address + count <= self.capacity:

@@ -25,10 +25,10 @@ from configurations import RTL, TOP, list_sources, read_configurations  # noqa: 
 
 GENERATED = RTL / "generated"
 BUILDS_FOLDER = RTL.parent / "build" / "benches"
-VERSION = "verilator.txt"  # Of Verilator, beside what it made.
+VERSION = "verilator.txt"  # Verilator's version, beside what it made.
 CONFIGURATIONS = {name: configuration.parameters for name, configuration in read_configurations().items()}
 CORE = TOP
-SEED = 1  # Of all that is random: what fails, fails again.
+SEED = 1  # All that is random starts here: what fails, fails again.
 
 
 class Build(NamedTuple):

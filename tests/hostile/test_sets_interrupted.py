@@ -25,7 +25,7 @@ import json, os, shutil, signal, sys
 from voxrt.cli.start import start
 from voxrt.cli.commands import build, convert, upload, view
 import voxrt.boards.board_scenes, voxrt.cli.run
-import PIL.PngImagePlugin, trimesh, voxrt.serve.blob, voxrt.board.simulated.model, voxrt.board.scene_memory
+import PIL.PngImagePlugin, trimesh, voxrt.export.blob, voxrt.board.simulated.model, voxrt.board.scene_memory
 arguments, count, signals = json.loads(sys.argv[1])
 events = moment = number = 0
 def watch(event, _arguments):

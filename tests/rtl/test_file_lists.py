@@ -41,12 +41,12 @@ def test_the_package_has_what_it_lists():
 
 def test_fusesoc_knows_the_parameters_of_the_core():
     text = (configurations.RTL / "voxrt.core").read_text()
-    told = dict(
+    values = dict(
         re.findall(r"^  (\w+):\n    datatype: int\n    default: (\d+)\n    paramtype: vlogparam$", text, re.MULTILINE)
     )
     defaults = json.loads((configurations.RTL / "configurations.json").read_text())["defaults"]
     del defaults["SimulationBlockBits"]
-    assert {name: int(value) for name, value in told.items()} == defaults
+    assert {name: int(value) for name, value in values.items()} == defaults
 
 
 @pytest.mark.skipif(shutil.which("bender") is None, reason="bender is not installed: cargo install bender")
@@ -56,10 +56,10 @@ def test_bender_lists_the_sources(tmp_path):
         f"package: {{ name: minimal }}\ndependencies: {{ voxrt: {{ path: {configurations.RTL.resolve()} }} }}\n"
     )
     subprocess.run(["bender", "update"], cwd=tmp_path, check=True, capture_output=True)
-    said = subprocess.run(
+    output = subprocess.run(
         ["bender", "script", "flist"], cwd=tmp_path, check=True, capture_output=True, text=True
     ).stdout
-    assert [Path(line) for line in said.split()] == [path.resolve() for path in list_sources()]
+    assert [Path(line) for line in output.split()] == [path.resolve() for path in list_sources()]
 
 
 def test_ip_xact_has_every_register():

@@ -5,8 +5,12 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from voxrt import sim
+from voxrt.errors import ToolError
+from voxrt.plans.open_workers import open_workers
+from voxrt.plans.workers import in_order
 from voxrt.views.pictures import render
 from voxrt.views.viewpoint import ViewpointError, aim_camera
 
@@ -99,19 +103,21 @@ def read_cameras(path: str | os.PathLike[str], rom: Rom, size: tuple[int, int]) 
     return [_camera(f"{path}: camera {number}", one, rom, size) for number, one in enumerate(entries)]
 
 
-def take_picture(job: PictureJob, number: int, camera: Camera) -> PathPicture | str:
-    """Render a picture, here or on a worker; returns it, or what is wrong."""
-    from voxrt.sim import check  # noqa: PLC0415 - most paths do without
+def take_picture(job: PictureJob, number: int, camera: Camera) -> PathPicture:
+    """Render a picture, here or on a worker.
 
+    Raises
+    ------
+    ToolError
+        It cannot be rendered.
+    """
     try:
-        if job.check:
-            checked = check(job.rom, camera, **job.options.for_engines())
-            frame: Frame = getattr(checked, job.options.engine)
-            return PathPicture(number, frame, checked.wrong_pixels)
-        frame = render(job.rom, camera, job.options)
-    except Exception as error:  # noqa: BLE001 - not every exception can travel
-        return f"camera {number}: {error}"
-    return PathPicture(number, frame, None)
+        if not job.check:
+            return PathPicture(number, render(job.rom, camera, job.options), None)
+        checked = sim.check(job.rom, camera, **job.options.for_engines())
+        return PathPicture(number, getattr(checked, job.options.engine), checked.wrong_pixels)
+    except Exception as error:
+        raise ToolError(f"camera {number}: {error}") from error
 
 
 def take_pictures(
@@ -124,19 +130,8 @@ def take_pictures(
     ToolError
         A picture cannot be rendered, or the cluster is not there or lost.
     """
-    from voxrt.errors import ToolError  # noqa: PLC0415 - few paths need it
-
-    made: Iterator[Any]
-    if scheduler is None and workers is None:
-        made = (take_picture(job, number, camera) for number, camera in enumerate(cameras))
-    else:
-        from voxrt.plans.cluster import in_order  # noqa: PLC0415 - few paths do this
-
-        made = in_order(take_picture, job, cameras, scheduler=scheduler, workers=workers)
-    for one in made:
-        if isinstance(one, str):
-            raise ToolError(one)
-        yield one
+    with open_workers(scheduler, workers, remedy="start it, and this command, again") as found:
+        yield from in_order(found.completed(take_picture, list(enumerate(cameras)), (job,)))
 
 
 def _camera(where: str, entry: object, rom: Rom, size: tuple[int, int]) -> Camera:
@@ -157,6 +152,6 @@ def _camera(where: str, entry: object, rom: Rom, size: tuple[int, int]) -> Camer
         raise ViewpointError(f"{where}: {error}") from None
 
 
-def _register(parts: list[float]) -> tuple[int, int, int]:
-    x, y, z = parts
+def _register(vector: list[float]) -> tuple[int, int, int]:
+    x, y, z = vector
     return int(x), int(y), int(z)

@@ -23,13 +23,12 @@ class ServeCommand:
     scenes: tuple[Path, ...] = option(files("SCENE"), (), ARGUMENTS,
         "Blobs, memories (.mem) and assets. The first is shown at once; the page lists all. Without scenes, the "
         "page lists examples and has a place to drop files.")
-    device: str = option(text("model|sim|pynq|serial:PORT"), "model", _DEVICE,
-        "The renderer: the exact model, the simulated hardware, which is slow, the PYNQ board that runs this "
-        "command, or a board at a serial line, such as serial:/dev/ttyUSB0. Its monitor follows the page.")
+    device: str = option(text("model|sim|serial:PORT|tcp://BOARD:PORT"), "model", _DEVICE,
+        "The renderer: the exact model, the simulated hardware, which is slow, a board at a serial line, such as "
+        "serial:/dev/ttyUSB0, whose monitor follows the page, or a PYNQ board that runs voxrt-board, such as "
+        "tcp://pynq:4810, with its token in the environment variable VOXRT_BOARD_TOKEN.")
     config: str = CONFIG.field(default="lit", group=_DEVICE,
         help="The configuration of the simulated hardware: tiny has no optional features, lit has all of them.")
-    bitstream: Path | None = option(file("FILE"), None, _DEVICE,
-        "The .bit of the PYNQ board, with its .hwh in the same folder.")
     host: str = option(text("ADDRESS"), "127.0.0.1", _NETWORK,
         "Address to listen on. Every address but loopback needs a token.")
     port: int = _PORT.field(help="TCP port of the page; 0 takes a free one.", default=8080)
@@ -55,7 +54,8 @@ class UploadCommand:
         "A blob, or a .mem file; its manifest, the .json in the same folder, is sent with it.")
     to: str | None = option(text("URL"), None, _DEVICE,
         "The address of the page, with its token, as the frame server printed it. Or the serial line of a board, "
-        "such as serial:/dev/ttyUSB0.")
+        "such as serial:/dev/ttyUSB0, or a PYNQ board that runs voxrt-board, such as tcp://pynq:4810, with its "
+        "token in the environment variable VOXRT_BOARD_TOKEN.")
     device: Literal["model", "sim"] | None = option(one_of(("model", "sim")), None, _DEVICE,
         "A device of this machine, to try the upload without a server.")
     config: str = CONFIG.field(default="lit", group=_DEVICE,

@@ -10,7 +10,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..base_design import read_block_rams
+from voxrt.board.designs.base_design import read_block_rams
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -213,7 +213,7 @@ class _Writer:
             factor = f"{side.lower()}{number}"
             bits = ", ".join(self.value(cell, f"{side}{i}") for i in reversed(range(18)))
             self._multiplier_value(cell, f"INPUT{side}", factor, 18, f"{{{bits}}}")
-            # Of 36 bits, so that the product's 36 bits are right whether a factor has a sign or not.
+            # Factors have 36 bits, so that the product's 36 bits are right whether a factor has a sign or not.
             sign = f"{factor}[17]" if signed else "1'b0"
             factors.append(f"{{{{18{{{sign}}}}}, {factor}}}")
         self._multiplier_value(cell, "OUTPUT", f"p{number}", 36, f"{factors[0]} * {factors[1]}")
@@ -241,9 +241,9 @@ class _Writer:
         """Give what a pin always is; None if that changes."""
         bit = self.net(cell, pin)
         chosen = cell["parameters"].get(f"{pin}MUX", "").strip()
-        for given in (chosen, bit):
-            if given in {"0", "1"}:
-                return int(given)
+        for level in (chosen, bit):
+            if level in {"0", "1"}:
+                return int(level)
         drivers = [
             other
             for other in self._module["cells"].values()

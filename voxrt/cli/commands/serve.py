@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import os
 import signal
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from voxrt.serve.server import FrameServer
     from voxrt.serve.server_options import ServerOptions
 
-SERIAL = "serial:"
+SERIAL, TCP = "serial:", "tcp://"
 
 
 def run(options: ServeCommand) -> None:
@@ -42,7 +43,7 @@ def run(options: ServeCommand) -> None:
     named = {name: _files(path) for name, path in scene_names(options.scenes or _examples()).items()}
     library = SceneLibrary(asset_reader(options.depth), named, asset_reader(options.depth, memory_depth=options.depth))
     server = ServerOptions(options.host, options.port, token, options.origin, options.legacy_port)
-    opened = open_device(options.device, options.config, options.bitstream)
+    opened = open_device(options.device, options.config)
     with contextlib.suppress(asyncio.CancelledError):
         asyncio.run(_serve(opened, first, library, server, json=options.reporting.json))
 
@@ -55,30 +56,25 @@ def _examples() -> list[Path]:
     return sorted(path.resolve() for path in folder.iterdir() if path.suffix in ASSET_READER_SUFFIXES)
 
 
-def open_device(name: str, config: str, bitstream: Path | None = None) -> Device:
-    """Open a device of this machine: ``model``, ``sim``, ``pynq`` or ``serial:PORT``."""
+def open_device(name: str, config: str) -> Device:
+    """Open a device: ``model``, ``sim``, ``serial:PORT`` or ``tcp://BOARD:PORT``."""
     from voxrt.board.errors import DeviceError  # noqa: PLC0415 - it imports NumPy
-    from voxrt.board.pynq_device import open_pynq  # noqa: PLC0415
     from voxrt.board.simulated.core import open_rtl  # noqa: PLC0415
     from voxrt.board.simulated.model import ModelDevice  # noqa: PLC0415
+    from voxrt.board.tcp_device import TOKEN_VARIABLE, open_tcp  # noqa: PLC0415
 
     if name.lower() == "model":
         return ModelDevice()
     if name.lower() == "sim":
         return open_rtl(config)
-    if name.startswith(SERIAL):
-        try:
-            return open_serial_device(name.removeprefix(SERIAL))
-        except DeviceError as error:
-            raise voxrt.SimulatorError(str(error)) from error
-    if name.lower() != "pynq":
-        raise UsageError(f"--device {name} is no device; there are model, sim, pynq and serial:PORT")
-    if bitstream is None:
-        raise UsageError("--device pynq needs the ray tracer's --bitstream FILE")
     try:
-        return open_pynq(str(bitstream))
+        if name.startswith(SERIAL):
+            return open_serial_device(name.removeprefix(SERIAL))
+        if name.startswith(TCP):
+            return open_tcp(name, os.environ.get(TOKEN_VARIABLE, ""))
     except DeviceError as error:
         raise voxrt.SimulatorError(str(error)) from error
+    raise UsageError(f"--device {name} is no device; there are model, sim, serial:PORT and tcp://BOARD:PORT")
 
 
 def open_serial_device(port: str) -> SerialDevice:
@@ -97,12 +93,11 @@ def open_serial_device(port: str) -> SerialDevice:
 
 
 def _read_first(path: Path, depth: int | None) -> Scene:
-    from voxrt.board.errors import Refused  # noqa: PLC0415
     from voxrt.boards.board_scenes import load_scene  # noqa: PLC0415
 
     try:
         return load_scene(path, depth)
-    except (Refused, OSError) as error:  # a blob is read by serve.blob, which raises Refused
+    except OSError as error:
         raise voxrt.RomError(f"{path}: {error}") from error
 
 

@@ -6,7 +6,7 @@ import asyncio
 from typing import TYPE_CHECKING, Any
 
 import voxrt
-from voxrt.cli.commands.serve import SERIAL, open_device, open_serial_device
+from voxrt.cli.commands.serve import SERIAL, TCP, open_device, open_serial_device
 from voxrt.cli.inputs.lighting import supported
 from voxrt.cli.results.board_results import UploadResult
 from voxrt.cli.results.build_results import print_json
@@ -33,10 +33,14 @@ def run(options: UploadCommand) -> None:
     with transfer_bar() as progress:
         if options.to is not None and options.to.startswith(SERIAL):
             _write_serial(options.rom, scene, options.to.removeprefix(SERIAL), progress, dry_run=options.dry_run)
-        elif options.to is not None:
+        elif options.to is not None and not options.to.startswith(TCP):
             asyncio.run(_send(options.rom, scene, options.to, progress, dry_run=options.dry_run))
         else:
-            _write(scene, open_device(options.device or "model", options.config), progress, dry_run=options.dry_run)
+            opened = open_device(options.to or options.device or "model", options.config)
+            try:
+                _write(scene, opened, progress, dry_run=options.dry_run)
+            finally:
+                opened.close()
     done = "checked; nothing was written" if options.dry_run else "loaded"
     if options.reporting.json:
         print_json(UploadResult(scene.name, scene.depth, len(scene.words), scene.crc32, written=not options.dry_run))
@@ -45,12 +49,11 @@ def run(options: UploadCommand) -> None:
 
 
 def _read(path: Path) -> Scene:
-    from voxrt.board.errors import Refused  # noqa: PLC0415 - it imports NumPy
-    from voxrt.boards.board_scenes import load_scene  # noqa: PLC0415
+    from voxrt.boards.board_scenes import load_scene  # noqa: PLC0415 - it imports NumPy
 
     try:
         return load_scene(path)
-    except (Refused, OSError) as error:
+    except OSError as error:
         raise voxrt.RomError(f"{path}: {error}") from error
 
 
