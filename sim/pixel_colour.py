@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from voxrt.octree import Rom
-from voxrt.octree.camera import PLAIN_LIGHTING
+from voxrt.octree.camera import FACES, PLAIN_LIGHTING
 from voxrt.sim import _model
 from voxrt.sim.engine_arguments import palette_of, shading_of
 from voxrt.sim.frame import FACE_NONE
@@ -20,8 +19,6 @@ if TYPE_CHECKING:
     from voxrt.octree.camera import Lighting, Triple
     from voxrt.sim.path import RayPath
 
-_REGISTERS = ("lower_faces", "upper_faces")
-
 
 @dataclass(frozen=True, slots=True)
 class Surface:
@@ -29,30 +26,18 @@ class Surface:
 
     Attributes
     ----------
-    material
-        Its material.
+    material, name
+        Id and name of its material.
     face
-        Axis of the face (0 x, 1 y, 2 z), or :data:`~voxrt.sim.FACE_NONE` if the camera stands in the solid.
-    is_upper
-        Whether the face looks along the positive axis.
-    cell
+        Where the side looks, such as ``"+y"``; None if the camera stands in the solid.
+    voxel
         The voxel.
     """
 
     material: int
-    face: int
-    is_upper: bool
-    cell: Triple
-
-    @property
-    def side(self) -> str | None:
-        """Where the face looks, such as ``"+y"``; None for a camera in the solid."""
-        return None if self.face == FACE_NONE else f"{'-+'[self.is_upper]}{'xyz'[self.face]}"
-
-    @property
-    def register(self) -> str | None:
-        """The register that has the brightness of the face, such as ``"upper_faces.y"``."""
-        return None if self.face == FACE_NONE else f"{_REGISTERS[self.is_upper]}.{'xyz'[self.face]}"
+    name: str
+    face: str | None
+    voxel: tuple[int, int, int]
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,26 +46,32 @@ class PixelColour:
 
     Attributes
     ----------
-    colour
-        sRGB, 0 … 255 each.
+    rgb
+        The colour: sRGB, 0 … 255 each.
+    shading
+        ``"faces"``, ``"report"`` or ``"flat"``.
     mirrors
         The mirrors that reflected the ray, in order.
     surface
         What ended the ray; None if it left the world, or had no reflections left at a mirror.
+    is_mean
+        Whether the colour is the mean of the mirrors', because the ray had no reflections left.
+    face_brightness
+        The register of the side's brightness, 0 … 255, with the shading ``"faces"``; else None.
     light
         What the point light does on the surface; ``"none"`` without one.
     brightness
-        The colour of the surface's material times this is the pixel's.
-    is_mean
-        Whether the colour is the mean of the mirrors', because the ray had no reflections left.
+        The colour of the surface's material times this is the pixel's; 1 without a surface.
     """
 
-    colour: Triple
+    rgb: tuple[int, int, int]
+    shading: str
     mirrors: tuple[Surface, ...]
     surface: Surface | None
-    light: Literal["none", "lit", "turned away", "shadowed"]
-    brightness: Fraction
     is_mean: bool
+    face_brightness: int | None
+    light: Literal["none", "lit", "turned away", "shadowed"]
+    brightness: float
 
 
 def explain_colour(rom: Rom, path: RayPath, lighting: Lighting = PLAIN_LIGHTING) -> PixelColour:
@@ -112,8 +103,8 @@ def explain_colour(rom: Rom, path: RayPath, lighting: Lighting = PLAIN_LIGHTING)
     >>> from voxrt.voxelize import EMPTY, Material
     >>> rom = Rom("dot", from_points([[1, 1, 1]], [1], depth=2), (EMPTY, Material("red", (255, 0, 0))))
     >>> found = explain_colour(rom, follow_ray(rom.octree, (24, 60, 24), (0, -1, 0)))
-    >>> found.colour, found.surface.side, found.brightness
-    ((255, 0, 0), '+y', Fraction(1, 1))
+    >>> found.rgb, found.surface.face, found.brightness
+    ((255, 0, 0), '+y', 1.0)
     """
     rom = instance("rom", rom, Rom)
     check_lighting(lighting)
@@ -123,11 +114,18 @@ def explain_colour(rom: Rom, path: RayPath, lighting: Lighting = PLAIN_LIGHTING)
         np.array(path.direction, np.int32),
         **shading_of(rom, lighting),
     )
+    mirrors = tuple(_surface(rom, *one) for one in found.mirrors)
+    surface = register = None
+    if found.surface is not None:
+        surface = _surface(rom, *found.surface)
+        if surface.face is not None and lighting.shading == "faces":
+            register = (lighting.faces or FACES)[2 * found.surface.face + found.surface.is_upper]
+    brightness = found.part / found.whole
     return PixelColour(
-        colour=found.colour,
-        mirrors=tuple(Surface(*one) for one in found.mirrors),
-        surface=None if found.surface is None else Surface(*found.surface),
-        light=found.light,
-        brightness=Fraction(found.part, found.whole),
-        is_mean=found.is_mean,
+        found.colour, lighting.shading, mirrors, surface, found.is_mean, register, found.light, brightness
     )
+
+
+def _surface(rom: Rom, material: int, face: int, is_upper: bool, cell: Triple) -> Surface:
+    side = None if face == FACE_NONE else f"{'-+'[is_upper]}{'xyz'[face]}"
+    return Surface(material, rom.materials[material].name, side, cell)

@@ -12,7 +12,7 @@ MANUAL = Path(__file__).resolve().parents[2] / "docs" / "commands.md"
 
 
 @pytest.mark.parametrize(
-    "name", ["BuildReport", "RenderResult", "TraceResult", "ReadingEntry", "ColourEntry", "SurfaceEntry"]
+    "name", ["BuildReport", "RenderResult", "TraceResult", "ReadingEntry", "PixelColour", "Surface"]
 )
 def test_the_manual_names_every_field(name):
     text = MANUAL.read_text()

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from importlib import import_module
 from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -59,20 +60,34 @@ def plain(name: str) -> str:
     return "".join(c for c in name.lower() if c.isalnum())
 
 
+def exact(check: str, *limits: Any, **bounds: Any) -> Callable[[str, Any], Any]:  # noqa: ANN401
+    """Return a check of :mod:`voxrt.voxelize.arguments`, which is imported when it is needed: NumPy comes with it."""
+
+    def convert(name: str, value: object) -> Any:  # noqa: ANN401
+        return getattr(import_module("voxrt.voxelize.arguments"), check)(name, value, *limits, **bounds)
+
+    return convert
+
+
+def several(count: int, expected: str, check: Callable[[str, Any], Any]) -> Callable[[str, Any], tuple[Any, ...]]:
+    """Make the check of so many values, each of which passes a check of its own."""
+
+    def convert(name: str, value: object) -> tuple[Any, ...]:
+        if not isinstance(value, Iterable) or len(parts := tuple(value)) != count:
+            raise ValueError(f"{name} must be {expected}, not {show(value)}")
+        return tuple(check(f"{name}[{row}]", part) for row, part in enumerate(parts))
+
+    return convert
+
+
 def whole(low: int, high: int, metavar: str = "N") -> Kind:
     """Make the kind of whole numbers from `low` to `high`."""
-
-    def check(name: str, value: object) -> int:
-        from voxrt.voxelize.arguments import whole  # noqa: PLC0415 - NumPy comes with it
-
-        return whole(name, value, low, high)
-
-    return Kind(metavar, read_whole, check)
+    return Kind(metavar, read_whole, exact("whole", low, high))
 
 
 def real(metavar: str, *, above: float = -inf, below: float = inf) -> Kind:
     """Make the kind of finite numbers between two."""
-    return Kind(metavar, read_number, check_real(above, below), "{:g}".format)
+    return Kind(metavar, read_number, exact("real", above=above, below=below), "{:g}".format)
 
 
 def one_of(choices: Sequence[str]) -> Kind:
@@ -85,18 +100,14 @@ def one_of(choices: Sequence[str]) -> Kind:
         raise ValueError(f"{text!r} is none of " + ", ".join(f'"{name}"' for name in choices))
 
     def check(name: str, value: object) -> str:
-        if type(value) is str and value in choices:
-            return value
-        from voxrt.voxelize.arguments import choice  # noqa: PLC0415
-
-        return str(choice(name, value, choices))
+        return value if type(value) is str and value in choices else str(exact("choice", choices)(name, value))
 
     return Kind("|".join(choices), read, check, choices=tuple(choices))
 
 
 def text(metavar: str) -> Kind:
     """Make the kind of any text."""
-    return Kind(metavar, str, check_text)
+    return Kind(metavar, str, exact("text"))
 
 
 def texts(metavar: str) -> Kind:
@@ -105,7 +116,7 @@ def texts(metavar: str) -> Kind:
     def check(name: str, value: object) -> tuple[str, ...]:
         if isinstance(value, str) or not isinstance(value, Iterable):
             raise TypeError(f"{name} must be a sequence of strings, not {show(value)}")
-        return tuple(check_text(f"{name}[{row}]", one) for row, one in enumerate(value))
+        return tuple(exact("text")(f"{name}[{row}]", one) for row, one in enumerate(value))
 
     return Kind(metavar, str, check, many=True)
 
@@ -132,38 +143,9 @@ def as_it_is(_name: str, value: Any) -> Any:  # noqa: ANN401
     return value
 
 
-def check_text(name: str, value: object) -> str:
-    """Refuse what is no string."""
-    if type(value) is str:
-        return value
-    from voxrt.voxelize.arguments import text  # noqa: PLC0415
-
-    return text(name, value)
-
-
-def check_flag(name: str, value: object) -> bool:
-    """Refuse what is neither True nor False."""
-    from voxrt.voxelize.arguments import flag  # noqa: PLC0415
-
-    return value if type(value) is bool else flag(name, value)
-
-
-def check_real(above: float = -inf, below: float = inf) -> Callable[[str, object], float]:
-    """Make the check of finite numbers between two."""
-
-    def check(name: str, value: object) -> float:
-        from voxrt.voxelize.arguments import real  # noqa: PLC0415
-
-        return real(name, value, above=above, below=below)
-
-    return check
-
-
 def show(value: object) -> str:
     """Return a value for an error message: one line, at most 60 characters."""
-    from voxrt.voxelize.arguments import shown  # noqa: PLC0415
-
-    return shown(value)
+    return str(import_module("voxrt.voxelize.arguments").shown(value))
 
 
 def read_whole(text: str) -> int:
@@ -185,5 +167,5 @@ def read_number(text: str) -> float:
 INTEGER = Kind("N", read_whole, as_it_is)
 """Whole numbers whose bounds are those of what takes them."""
 
-FLAG = Kind("", lambda _text: True, check_flag, is_flag=True)
+FLAG = Kind("", lambda _text: True, exact("flag"), is_flag=True)
 """Options that are on or off."""

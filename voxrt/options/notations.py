@@ -9,16 +9,7 @@ from os import PathLike
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from voxrt.options.backgrounds import read_background
-from voxrt.options.kinds import (
-    Kind,
-    as_it_is,
-    check_flag,
-    check_real,
-    file,
-    plain,
-    read_whole,
-    show,
-)
+from voxrt.options.kinds import FLAG, Kind, as_it_is, exact, file, plain, read_whole, several, show
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -60,10 +51,10 @@ def _length(text: str, *, is_unit: bool) -> float:
         return inf
 
 
-LENGTH = Kind("LENGTH", lambda text: _length(text, is_unit=False), check_real(above=0))
+LENGTH = Kind("LENGTH", lambda text: _length(text, is_unit=False), exact("real", above=0))
 """Metres; ``5cm`` and ``2 in`` on the command line."""
 
-UNIT = Kind("UNIT", lambda text: _length(text, is_unit=True), check_real(above=0))
+UNIT = Kind("UNIT", lambda text: _length(text, is_unit=True), exact("real", above=0))
 """Metres per unit; its name on the command line."""
 
 
@@ -89,16 +80,10 @@ def _triple(read: Callable[[str], object], example: str) -> Callable[[str], obje
     return triple
 
 
-def _check_vector(name: str, value: object) -> tuple[float, float, float]:
-    from voxrt.voxelize.arguments import vector  # noqa: PLC0415 - NumPy comes with it
-
-    return vector(name, value)
-
-
 DIRECTION = Kind(
     "X,Y,Z",
     _triple(float, "three numbers such as 1,3,2"),
-    _check_vector,
+    exact("vector"),
     lambda value: ",".join(f"{part:g}" for part in value),
 )
 """A direction in the scene."""
@@ -143,11 +128,11 @@ def _read_corners(text: str) -> tuple[float, ...]:
     return values
 
 
+_six = several(6, "the lowest and the highest corner, six numbers", exact("real"))
+
+
 def _check_corners(name: str, value: object) -> tuple[float, ...]:
-    if not isinstance(value, Iterable) or len(parts := list(value)) != 6:
-        raise ValueError(f"{name} must be the lowest and the highest corner, six numbers, not {show(value)}")
-    real = check_real()
-    corners = tuple(real(f"{name}[{row}]", one) for row, one in enumerate(parts))
+    corners = _six(name, value)
     if not all(low < high for low, high in zip(corners[:3], corners[3:], strict=True)):
         raise ValueError(f"{name} must be the lowest and then the highest corner, not {show(value)}")
     return corners
@@ -165,24 +150,19 @@ def _read_pixels(text: str) -> tuple[int, int]:
     return width, int(parts[1]) if len(parts) == 2 else max(1, round(width * 3 / 4))
 
 
-def _check_pixels(name: str, value: object) -> tuple[int, int]:
-    from voxrt.voxelize.arguments import whole  # noqa: PLC0415
-
-    if not isinstance(value, Iterable) or len(parts := list(value)) != 2:
-        raise ValueError(f"{name} must be a width and a height in pixels, not {show(value)}")
-    return whole(f"{name}[0]", parts[0], 1, _SIZE_LIMIT), whole(f"{name}[1]", parts[1], 1, _SIZE_LIMIT)
-
-
-PIXELS = Kind("WxH", _read_pixels, _check_pixels, lambda size: "{}x{}".format(*size))
+PIXELS = Kind(
+    "WxH",
+    _read_pixels,
+    several(2, "a width and a height in pixels", exact("whole", 1, _SIZE_LIMIT)),
+    lambda size: "{}x{}".format(*size),
+)
 """The size of a picture: ``640x480``, or its width alone for a picture of 4 to 3."""
 
 
 def _check_samples(name: str, value: object) -> int:
-    from voxrt.voxelize.arguments import whole  # noqa: PLC0415
-
-    if (samples := whole(name, value, 1, 4)) == 3:
+    if (samples := exact("whole", 1, 4)(name, value)) == 3:
         raise ValueError(f"{name} must be 1, 2 or 4, not 3")
-    return samples
+    return int(samples)
 
 
 SAMPLES = Kind("1|2|4", read_whole, _check_samples, choices=("1", "2", "4"))
@@ -211,13 +191,12 @@ def _read_sky(text: str) -> float | str:
 
 
 def _check_sky(name: str, value: object) -> float | str:
-    from voxrt.voxelize.arguments import real  # noqa: PLC0415
     from voxrt.voxelize.colour.srgb import linear_from_hex  # noqa: PLC0415
 
     if isinstance(value, str):
         linear_from_hex(name, value)
         return value
-    strength = real(name, value)
+    strength = float(exact("real")(name, value))
     if not 0 <= strength <= _BRIGHTEST:
         raise ValueError(f"{name} must be a strength of 0 … {_BRIGHTEST}, or a colour like '#9db4d0', not {value!r}")
     return strength
@@ -237,9 +216,7 @@ def _read_bytes(text: str) -> int:
 
 
 def _check_bytes(name: str, value: object) -> int:
-    from voxrt.voxelize.arguments import whole  # noqa: PLC0415
-
-    size = whole(name, value, 0, 1 << 4096)
+    size = int(exact("whole", 0, 1 << 4096)(name, value))
     if not 1 << 26 <= size < 1 << 62:
         raise ValueError(f"{name} must be 64M to 4194303T, which are {1 << 26} to {(1 << 62) - 1} bytes, not {size}")
     return size
@@ -251,9 +228,10 @@ BYTES = Kind("SIZE", _read_bytes, _check_bytes)
 
 def _check_budget(name: str, value: object) -> int | str:
     from voxrt.octree import BOARDS  # noqa: PLC0415
-    from voxrt.voxelize.arguments import choice, whole  # noqa: PLC0415
 
-    return choice(name, value, tuple(BOARDS)) if isinstance(value, str) else whole(name, value, 1, _MOST_WORDS)
+    check = exact("choice", tuple(BOARDS)) if isinstance(value, str) else exact("whole", 1, _MOST_WORDS)
+    found: int | str = check(name, value)
+    return found
 
 
 BUDGET = Kind("WORDS", read_whole, _check_budget)
@@ -278,13 +256,11 @@ BOARD = Kind("NAME", _read_board, as_it_is)
 """A board whose memory is a budget."""
 
 
-def _check_interior(name: str, value: object) -> int | str:
-    from voxrt.voxelize.arguments import whole  # noqa: PLC0415
-
-    return value if isinstance(value, str) else whole(name, value, 1, 255)
-
-
-INTERIOR = Kind("keep|any|MATERIAL", str, _check_interior)
+INTERIOR = Kind(
+    "keep|any|MATERIAL",
+    str,
+    lambda name, value: value if isinstance(value, str) else exact("whole", 1, 255)(name, value),
+)
 """A material by name or id, or one of two rules."""
 
 PICTURE = file("FILE", (".png",), "pictures are PNG files")
@@ -296,7 +272,7 @@ PICTURES = file("FILE", (".png", ".gif"), "pictures are PNG files, and animation
 PREVIEW = Kind(
     "[FILE]",
     lambda text: PICTURE.read(text) if text else True,
-    lambda name, value: value if isinstance(value, str | PathLike) else check_flag(name, value),
+    lambda name, value: value if isinstance(value, str | PathLike) else FLAG.check(name, value),
     is_optional=True,
     is_file=True,
 )

@@ -8,7 +8,7 @@ import voxrt
 from voxrt.cli.inputs.configuration import find_configuration
 from voxrt.cli.inputs.lighting import supported
 from voxrt.cli.inputs.source import read_source
-from voxrt.cli.results.build_results import print_json, warning_entries
+from voxrt.cli.results.build_results import print_json
 from voxrt.cli.results.memory_results import ConvertResult
 from voxrt.cli.terminal.errors import UsageError
 from voxrt.cli.terminal.messages import name_file, summarize
@@ -42,7 +42,7 @@ def run(options: ConvertCommand) -> None:
         source = read_source(options.source, options.depth, options.from_dialect, material, frames=has_frames)
         files = voxrt.convert(source.blob, target, dialect=options.dialect)
     if options.reporting.json:
-        print_json(ConvertResult([name_file(file) for file in files], warning_entries(source.warnings)))
+        print_json(ConvertResult([name_file(file) for file in files], source.warnings))
     else:
         summarize(f"{options.source.name}:", [("wrote", str(file)) for file in files])
 

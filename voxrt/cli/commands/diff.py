@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 import voxrt
 from voxrt.cli.inputs.source import Source, is_asset, read_source
 from voxrt.cli.results.build_results import print_json
-from voxrt.cli.results.memory_results import DiffResult, RegionEntry
+from voxrt.cli.results.memory_results import DiffResult
 from voxrt.cli.terminal.errors import UsageError
 from voxrt.cli.terminal.messages import summarize
 
@@ -40,10 +41,7 @@ def run(options: DiffCommand) -> None:
     found = voxrt.diff(roms[0].octree, roms[1].octree)
     regions = voxrt.differing_regions(roms[0].octree, roms[1].octree)
     if options.reporting.json:
-        entries = [RegionEntry(part.bounds, part.appeared, part.vanished, part.recoloured) for part in regions]
-        print_json(
-            DiffResult(found.voxels, found.appeared, found.vanished, found.recoloured, found.bounds, entries),
-        )
+        print_json(DiffResult(found.voxels, **asdict(found), regions=regions))
         return
     rows = [
         ("differ", f"{found.voxels:,} voxels"),

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from voxrt.cli.inputs.lighting import merge_lighting
 from voxrt.cli.inputs.source import read_source
 from voxrt.cli.results.build_results import print_json
-from voxrt.cli.results.memory_results import ColourEntry, SurfaceEntry, colour_entry, trace_result
+from voxrt.cli.results.memory_results import trace_result
 from voxrt.cli.terminal.errors import UsageError
 from voxrt.cli.terminal.messages import summarize, tabulate
 from voxrt.sim import explain_colour, follow_pixel
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from voxrt.octree import Rom
     from voxrt.options.picture_commands import TraceCommand
     from voxrt.sim import PixelColour
+    from voxrt.sim.pixel_colour import Surface
 
 _LIGHTS = {
     "lit": "shines on it",
@@ -34,9 +35,8 @@ def run(options: TraceCommand) -> None:
     path = follow_pixel(source.rom.octree, camera, size, pixel)
     lighting = merge_lighting(source.blob.lighting, options.lighting)
     colour = explain_colour(source.rom, path, lighting)
-    entry = colour_entry(source.rom, colour, lighting)
     if options.reporting.json:
-        print_json(trace_result(camera, size, pixel, path, entry))
+        print_json(trace_result(camera, size, pixel, path, colour))
         return
     x, y, z = (f"{value / 16:g}" for value in path.origin)
     summarize(
@@ -51,30 +51,28 @@ def run(options: TraceCommand) -> None:
     )
     if path.readings:
         tabulate(HEADS, ray_table(source.rom, path), answer=True)
-    summarize("The colour of the pixel:", _colour_rows(source.rom, colour, entry), answer=True)
+    summarize("The colour of the pixel:", _colour_rows(source.rom, colour), answer=True)
 
 
-def _colour_rows(rom: Rom, colour: PixelColour, entry: ColourEntry) -> list[tuple[str, str]]:
-    rows = [("mirror", _described(rom, mirror)) for mirror in entry.mirrors]
-    result = "#{:02x}{:02x}{:02x}".format(*colour.colour)
-    surface = colour.surface
-    if surface is None or entry.surface is None:
+def _colour_rows(rom: Rom, colour: PixelColour) -> list[tuple[str, str]]:
+    rows = [("mirror", _described(rom, mirror)) for mirror in colour.mirrors]
+    result, surface = "#{:02x}{:02x}{:02x}".format(*colour.rgb), colour.surface
+    if surface is None:
         why = "the mean of the mirrors: the ray has no reflections left" if colour.is_mean else "the background"
         return [*rows, ("colour", f"{result}, {why}")]
-    rows.append(("surface", _described(rom, entry.surface)))
-    if surface.side is None:
+    rows.append(("surface", _described(rom, surface)))
+    if surface.face is None:
         return [*rows, ("colour", f"{result}, that of the material: the camera stands in it")]
-    if entry.face_brightness is not None:
-        rows.append(
-            ("face", f"{surface.side} has brightness {entry.face_brightness} of 255 (register {surface.register})")
-        )
-    if entry.light in _LIGHTS:
-        rows.append(("light", _LIGHTS[entry.light]))
-    rows.append(("brightness", f"{entry.brightness:.4f}, by the shading {entry.shading}"))
+    if colour.face_brightness is not None:
+        register = f"{'upper' if surface.face[0] == '+' else 'lower'}_faces.{surface.face[1]}"
+        rows.append(("face", f"{surface.face} has brightness {colour.face_brightness} of 255 (register {register})"))
+    if colour.light in _LIGHTS:
+        rows.append(("light", _LIGHTS[colour.light]))
+    rows.append(("brightness", f"{colour.brightness:.4f}, by the shading {colour.shading}"))
     return [*rows, ("colour", f"{result}, the material's times the brightness")]
 
 
-def _described(rom: Rom, surface: SurfaceEntry) -> str:
+def _described(rom: Rom, surface: Surface) -> str:
     x, y, z = surface.voxel
     side = "from within" if surface.face is None else f"its {surface.face} side"
     colour = "#{:02x}{:02x}{:02x}".format(*rom.materials[surface.material].colour)

@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from voxrt.cli.terminal.messages import name_file, print_answer
+from voxrt.export.provenance import BakedLight  # noqa: TC001 - msgspec resolves the annotations of this module
+from voxrt.voxelize import SceneWarning  # noqa: TC001
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
     from pathlib import Path
 
     from voxrt.building.fitting import BudgetFit, InteriorFit
     from voxrt.building.result import BuildResult
     from voxrt.sim import Camera, RenderCost
     from voxrt.views.pictures import Picture
-    from voxrt.voxelize import SceneWarning
 
 
 class MaterialEntry(msgspec.Struct, frozen=True):
@@ -32,15 +32,6 @@ class MaterialEntry(msgspec.Struct, frozen=True):
     """sRGB, 8 bits per channel."""
     authored: bool
     """False for the default material of objects without a material."""
-
-
-class WarningEntry(msgspec.Struct, frozen=True):
-    """Something that the asset said and the build did not honour as it stands."""
-
-    kind: str
-    """A stable name for programs."""
-    message: str
-    count: int
 
 
 class CameraEntry(msgspec.Struct, frozen=True):
@@ -120,25 +111,6 @@ class InteriorEntry(msgspec.Struct, frozen=True):
     """What the memory takes when they keep their materials."""
 
 
-class BakedEntry(msgspec.Struct, frozen=True):
-    """The light that was baked."""
-
-    sun: tuple[float, float, float]
-    """The direction towards the sun, scene frame."""
-    sky: tuple[float, float, float]
-    """Linear light of the sky: red, green, blue."""
-    samples: int
-    """Rays to the sky per voxel."""
-    voxels: int
-    """Voxels with baked colours."""
-    colours: int
-    """The most baked colours."""
-    words_before: int
-    """What the memory takes without baked light."""
-    words: int
-    """What it takes with it, before a budget."""
-
-
 class FramesEntry(msgspec.Struct, frozen=True):
     """The frames of an animation."""
 
@@ -158,7 +130,7 @@ class BuildReport(msgspec.Struct, frozen=True):
     blocks: int
     voxels: int
     materials: list[MaterialEntry]
-    warnings: list[WarningEntry]
+    warnings: tuple[SceneWarning, ...]
     seconds: dict[str, float]
     """Wall seconds per stage, in order. `start`: from the start of the process; `rest`: between the stages."""
     render: RenderResult | None
@@ -167,7 +139,7 @@ class BuildReport(msgspec.Struct, frozen=True):
     """Null when there was none."""
     interior: InteriorEntry | None = None
     """Null when they keep their materials."""
-    baked: BakedEntry | None = None
+    baked: BakedLight | None = None
     """Null when no light was baked."""
     frames: FramesEntry | None = None
     """Null when no animation was built."""
@@ -186,12 +158,12 @@ def build_report(result: BuildResult, seconds: dict[str, float]) -> BuildReport:
             MaterialEntry(number, material.name, material.colour, material.authored)
             for number, material in enumerate(rom.materials)
         ],
-        warnings=warning_entries(result.warnings),
+        warnings=result.warnings,
         seconds=seconds,
         render=None if result.preview is None else render_result(result.preview),
         budget=None if result.budget is None else budget_entry(result.budget),
         interior=None if result.interior is None else _interior_entry(result.interior),
-        baked=None if result.bake is None else BakedEntry(**msgspec.structs.asdict(result.bake)),
+        baked=result.bake,
         frames=None if animation is None else FramesEntry(list(animation.roots), animation.words_alone),
     )
 
@@ -213,11 +185,6 @@ def budget_entry(budget: BudgetFit) -> BudgetEntry:
         ssim=budget.ssim,
         lossless=budget.lossless,
     )
-
-
-def warning_entries(warnings: Iterable[SceneWarning]) -> list[WarningEntry]:
-    """Return warnings, for programs."""
-    return [WarningEntry(warning.kind, warning.message, warning.count) for warning in warnings]
 
 
 def render_result(picture: Picture, file: Path | None = None, wrong_pixels: int | None = None) -> RenderResult:

@@ -3,29 +3,25 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from typing import TYPE_CHECKING
 
 import msgspec
 
 import voxrt
-from voxrt.cli.results.build_results import (  # msgspec resolves the annotations of this module
-    CameraEntry,
-    WarningEntry,
-    camera_entry,
-)
+from voxrt.cli.results.build_results import CameraEntry, camera_entry
 from voxrt.cli.terminal.messages import name_file
-from voxrt.export.info import BoardInfo, LevelInfo, MaterialInfo  # noqa: TC001
-from voxrt.octree.camera import FACES
+from voxrt.export.info import BoardInfo, LevelInfo, MaterialInfo  # noqa: TC001 - msgspec resolves annotations
+from voxrt.octree import Region  # noqa: TC001
+from voxrt.sim import PixelColour  # noqa: TC001
+from voxrt.voxelize import SceneWarning  # noqa: TC001
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from voxrt.export import Blob
-    from voxrt.octree import Animation, Rom
-    from voxrt.octree.camera import Lighting
-    from voxrt.sim import Camera, Likeness, PixelColour, RayPath
-    from voxrt.sim.pixel_colour import Surface
+    from voxrt.octree import Animation
+    from voxrt.sim import Camera, Likeness, RayPath
     from voxrt.views.depth_likeness import LikenessAtDepth
 
 _AXES = ("x", "y", "z", None)
@@ -37,7 +33,7 @@ class ConvertResult(msgspec.Struct, frozen=True):
 
     outputs: list[str]
     """Files written, the memory first."""
-    warnings: list[WarningEntry]
+    warnings: tuple[SceneWarning, ...]
 
 
 class WorldEntry(msgspec.Struct, frozen=True):
@@ -76,25 +72,15 @@ class InfoResult(msgspec.Struct, frozen=True):
     voxels: int
     bounds: tuple[tuple[int, int, int], tuple[int, int, int]] | None
     """The smallest box that holds the solid voxels: its lowest voxel, and one behind its highest."""
-    levels: list[LevelInfo]
-    materials: list[MaterialInfo]
-    boards: list[BoardInfo]
+    levels: tuple[LevelInfo, ...]
+    materials: tuple[MaterialInfo, ...]
+    boards: tuple[BoardInfo, ...]
     world: WorldEntry | None
     """Null for a memory that does not say."""
     mean_materials: int | None = None
     """Blocks that have one, for the level of detail; null for a memory without it."""
     frames: list[FrameEntry] | None = None
     """Those of an animation; null for a memory of one scene. All else is then of the first, but for the words."""
-
-
-class RegionEntry(msgspec.Struct, frozen=True):
-    """Voxels that differ and hang together."""
-
-    bounds: tuple[tuple[int, int, int], tuple[int, int, int]]
-    """The smallest box that holds them: its lowest voxel, and one behind its highest."""
-    appeared: int
-    vanished: int
-    recoloured: int
 
 
 class DiffResult(msgspec.Struct, frozen=True):
@@ -109,7 +95,7 @@ class DiffResult(msgspec.Struct, frozen=True):
     """Solid in both, of different materials."""
     bounds: tuple[tuple[int, int, int], tuple[int, int, int]] | None
     """The smallest box that holds them: its lowest voxel, and one behind its highest."""
-    regions: list[RegionEntry]
+    regions: tuple[Region, ...]
     """The pieces that hang together, those with most voxels first."""
 
 
@@ -164,36 +150,6 @@ class ReadingEntry(msgspec.Struct, frozen=True):
     """Where that was, voxels."""
 
 
-class SurfaceEntry(msgspec.Struct, frozen=True):
-    """A surface that a ray met."""
-
-    material: int
-    name: str
-    """That of the material."""
-    face: str | None
-    """Where the side looks, such as `+y`; null where the camera stands in the solid."""
-    voxel: tuple[int, int, int]
-
-
-class ColourEntry(msgspec.Struct, frozen=True):
-    """How a pixel comes by its colour."""
-
-    rgb: tuple[int, int, int]
-    """The colour: sRGB, 0 to 255, as in the picture."""
-    shading: str
-    """`faces`, `report` or `flat`."""
-    mirrors: list[SurfaceEntry]
-    """The mirrors that reflected the ray, in order."""
-    surface: SurfaceEntry | None
-    """What ended the ray; null if it left the world, or had no reflections left."""
-    face_brightness: int | None
-    """The register of the side's brightness, 0 to 255, with the shading `faces`; else null."""
-    light: str
-    """What the light does on the surface: `none`, `lit`, `turned away` or `shadowed`."""
-    brightness: float | None
-    """Times the colour of the material it is the pixel's; null without a surface."""
-
-
 class TraceResult(msgspec.Struct, frozen=True):
     """``voxrt trace --json``."""
 
@@ -211,11 +167,11 @@ class TraceResult(msgspec.Struct, frozen=True):
     """The axis of the side hit; null at a miss, and from within a solid."""
     voxel: tuple[int, int, int] | None
     """Null at a miss."""
-    colour: ColourEntry
+    colour: PixelColour
 
 
 def trace_result(
-    camera: Camera, size: tuple[int, int], pixel: tuple[int, int], path: RayPath, colour: ColourEntry
+    camera: Camera, size: tuple[int, int], pixel: tuple[int, int], path: RayPath, colour: PixelColour
 ) -> TraceResult:
     """Tell programs the way of a ray."""
     return TraceResult(
@@ -245,27 +201,6 @@ def trace_result(
     )
 
 
-def colour_entry(rom: Rom, colour: PixelColour, lighting: Lighting) -> ColourEntry:
-    """Tell programs how a pixel comes by its colour."""
-
-    def entry(surface: Surface) -> SurfaceEntry:
-        name = rom.materials[surface.material].name
-        return SurfaceEntry(surface.material, name, surface.side, surface.cell)
-
-    surface, register = colour.surface, None
-    if surface is not None and surface.side is not None and lighting.shading == "faces":
-        register = (lighting.faces or FACES)[2 * surface.face + surface.is_upper]
-    return ColourEntry(
-        rgb=colour.colour,
-        shading=lighting.shading,
-        mirrors=[entry(mirror) for mirror in colour.mirrors],
-        surface=None if surface is None else entry(surface),
-        face_brightness=register,
-        light=colour.light,
-        brightness=None if surface is None else float(colour.brightness),
-    )
-
-
 def frame_entries(animation: Animation) -> list[FrameEntry]:
     """Tell programs the frames of an animation."""
     return [FrameEntry(one.root, one.words, one.time, one.name) for one in animation.frames]
@@ -274,19 +209,9 @@ def frame_entries(animation: Animation) -> list[FrameEntry]:
 def info_result(blob: Blob) -> InfoResult:
     """Tell programs what a memory holds."""
     rom = blob.rom
-    info = voxrt.rom_info(rom)
+    facts = voxrt.rom_info(rom)
     return InfoResult(
-        name=info.name,
-        depth=info.depth,
-        words=info.words,
-        blocks=info.blocks,
-        shared_words=info.shared_words,
-        unshared_blocks=info.unshared_blocks,
-        voxels=info.voxels,
-        bounds=info.bounds,
-        levels=list(info.levels),
-        materials=list(info.materials),
-        boards=list(info.boards),
+        **{one.name: getattr(facts, one.name) for one in fields(facts)},
         world=None if rom.grid is None else WorldEntry(rom.grid.origin, rom.grid.voxel_size),
         mean_materials=None if rom.octree.means is None else int((rom.octree.means > 0).sum()),
         frames=None if blob.animation is None else frame_entries(blob.animation),

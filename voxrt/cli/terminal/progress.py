@@ -12,7 +12,7 @@ from voxrt.cli.terminal.messages import is_quiet, is_verbose, note
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from rich.progress import Progress, TaskID
+    from rich.progress import BarColumn, Progress, TaskID
 
     from voxrt.plans.by_workers import ClusterProgress
     from voxrt.plans.estimate import BuildEstimate
@@ -81,8 +81,7 @@ def build_bar() -> Iterator[BuildBar]:
         yield bar
         bar.end()
         return
-    from rich.console import Console  # noqa: PLC0415 - only terminals need it
-    from rich.progress import BarColumn, Progress, SpinnerColumn, Task, TextColumn, TimeElapsedColumn  # noqa: PLC0415
+    from rich.progress import BarColumn, Task  # noqa: PLC0415 - only terminals need it
 
     class TimeColumn(BarColumn):
         """A bar that fills with the time; it waits just before its end for a build that takes longer."""
@@ -92,29 +91,20 @@ def build_bar() -> Iterator[BuildBar]:
                 task.completed = min(task.elapsed, 0.98 * task.total)
             return super().render(task)
 
-    columns = (SpinnerColumn(), TextColumn("{task.description:<10}", markup=False), TimeColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+    with _terminal_progress(TimeColumn()) as progress:
         yield BuildBar(progress, progress.add_task("", total=None))
 
 
 @contextmanager
 def stage_bar(stages: int) -> Iterator[Callable[[str], None]]:
     """Show which of some stages is reached, on a terminal; yields what to call at each one's begin."""
-    if is_quiet() or not sys.stderr.isatty():
-        yield lambda _stage: None
-        return
-    from rich.console import Console  # noqa: PLC0415 - only terminals need it
-    from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn  # noqa: PLC0415
-
-    columns = (SpinnerColumn(), TextColumn("{task.description:<10}", markup=False), BarColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task("", total=stages)
-        begun = 0
+    begun = -1
+    with transfer_bar() as show:
 
         def begin(stage: str) -> None:
             nonlocal begun
-            progress.update(task, description=stage, completed=begun)
             begun += 1
+            show(stage, begun, stages)
 
         yield begin
 
@@ -125,10 +115,15 @@ def transfer_bar() -> Iterator[Callable[[str, int, int], None]]:
     if is_quiet() or not sys.stderr.isatty():
         yield lambda _stage, _done, _total: None
         return
+    with _terminal_progress() as progress:
+        task = progress.add_task("", total=None)
+        yield lambda stage, done, total: progress.update(task, description=stage, completed=done, total=total)
+
+
+def _terminal_progress(bar: BarColumn | None = None) -> Progress:
     from rich.console import Console  # noqa: PLC0415 - only terminals need it
     from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn  # noqa: PLC0415
 
-    columns = (SpinnerColumn(), TextColumn("{task.description:<10}", markup=False), BarColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task("", total=None)
-        yield lambda stage, done, total: progress.update(task, description=stage, completed=done, total=total)
+    text = TextColumn("{task.description:<10}", markup=False)
+    columns = (SpinnerColumn(), text, bar or BarColumn(), TimeElapsedColumn())
+    return Progress(*columns, console=Console(stderr=True), transient=True)
