@@ -26,8 +26,8 @@ MAY_IMPORT = {
 INSIDE_VOXRT = ("options", "sources", "views", "plans", "building", "boards", "cli")
 """The folders of ``voxrt/``, each of which imports itself and those before it; modules beside them import none."""
 
-INSIDE_CLI = ("terminal", "results", "inputs", "line", "commands", "run", "start")
-"""The folders of ``voxrt/cli/``, and its last modules, in the same order."""
+INSIDE_CLI = ("terminal", "results", "schemas", "inputs", "line", "commands", "run", "start")
+"""The folders and modules of ``voxrt/cli/``, in the same order."""
 
 INSIDE_SOURCES = {
     "voxelize/src": ("work", "grid", "scene", "coverage", "holes", "mesh", "tiles", "colour", "bindings"),
@@ -140,7 +140,7 @@ def test_the_folders_of_voxrt_import_in_one_direction(graph, above, order):
     wrong = [
         f"{name} imports {target}"
         for name, targets in graph.items()
-        if name.startswith("voxrt.") and name != "voxrt.__main__"
+        if name.startswith("voxrt.") and name not in {"voxrt.__main__", above}
         for target in targets
         if place(target) > place(name)
     ]
