@@ -1,14 +1,14 @@
 """A command line becomes a command and the values of its options, by the table of the command.
 
-``optparse`` and not ``argparse`` takes it apart: options and arguments may be mixed, and values may begin with a dash.
+The parsers of the standard library are not used: ``argparse`` refuses values that begin with a dash, and options whose
+value is optional before an argument; each of them takes longer to import than this takes to run.
 """
 
 from __future__ import annotations
 
 from dataclasses import MISSING
-from optparse import OptionParser
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 
 from voxrt.cli.terminal.errors import UsageError
 from voxrt.options.commands import COMMANDS
@@ -20,11 +20,6 @@ if TYPE_CHECKING:
     from voxrt.options.option import Option
 
 HELP_FLAGS = ("--help", "-h")
-
-
-class _Parser(OptionParser):
-    def error(self, msg: str) -> NoReturn:
-        raise UsageError(msg)
 
 
 def flags_of(name: str, option: Option) -> tuple[str, ...]:
@@ -48,7 +43,8 @@ def find_command(name: str) -> str:
 
 def asks_for_help(arguments: Sequence[str]) -> bool:
     """Tell whether a command line asks for help."""
-    return any(flag in _before_dashes(arguments) for flag in HELP_FLAGS)
+    options = arguments[: arguments.index("--")] if "--" in arguments else arguments
+    return any(flag in options for flag in HELP_FLAGS)
 
 
 def read_options(command: str, arguments: Sequence[str]) -> Any:  # noqa: ANN401 - the table of the command
@@ -61,16 +57,7 @@ def read_options(command: str, arguments: Sequence[str]) -> Any:  # noqa: ANN401
     """
     options = command_options(command)
     named = {name: option for name, option in options.items() if option.group != ARGUMENTS}
-    arguments = _bind_optional(arguments, named)
-    _refuse_unknown(arguments, named)
-    parser = _Parser(add_help_option=False)
-    for name, option in named.items():
-        if option.kind.is_flag:
-            parser.add_option(*flags_of(name, option), dest=name, action="append_const", const="")
-        else:
-            parser.add_option(*flags_of(name, option), dest=name, action="append")
-    found, words = parser.parse_args(list(arguments))
-    texts: dict[str, list[str]] = {name: getattr(found, name) or [] for name in named}
+    texts, words = _split(arguments, named)
     for name, option in options.items():
         if option.group == ARGUMENTS:
             count = len(words) if option.kind.many else 1
@@ -112,22 +99,40 @@ def _metavar(option: Option) -> str:
     return option.metavar or option.kind.metavar
 
 
-def _before_dashes(arguments: Sequence[str]) -> Sequence[str]:
-    return arguments[: arguments.index("--")] if "--" in arguments else arguments
+def _split(arguments: Sequence[str], options: dict[str, Option]) -> tuple[dict[str, list[str]], list[str]]:
+    """Take a command line apart: the texts of each option, and the arguments.
 
-
-def _refuse_unknown(arguments: Sequence[str], options: dict[str, Option]) -> None:
-    """Refuse options that are not there, which ``optparse`` may take for others, and those without their value."""
-    takes_value = {flag: option for name, option in options.items() for flag in flags_of(name, option)}
-    words = _before_dashes(arguments)
-    for place, word in enumerate(words):
-        after = words[place + 1] if place + 1 < len(words) else None
-        flag = word.partition("=")[0]
-        if word.startswith("--") and flag not in takes_value:
-            raise UsageError(f"there is no option {flag}{_perhaps(flag, takes_value)}")
-        option = takes_value.get(word)
-        if option and not (option.kind.is_flag or option.kind.is_optional) and (after is None or after in takes_value):
-            raise UsageError(f"{word} requires an argument: {_metavar(option)}")
+    Options and arguments may be mixed. A value may begin with a dash if it is not an option. Where a value is optional,
+    the next word is the value unless it begins with a dash or has the suffix of an asset.
+    """
+    names = {flag: name for name, option in options.items() for flag in flags_of(name, option)}
+    texts: dict[str, list[str]] = {name: [] for name in options}
+    words: list[str] = []
+    rest = list(arguments)
+    while rest:
+        word = rest.pop(0)
+        if word == "--":
+            return texts, words + rest
+        if word == "-" or not word.startswith("-"):
+            words.append(word)
+            continue
+        flag, joined, value = word.partition("=") if word.startswith("--") else (word[:2], word[2:], word[2:])
+        if flag not in names:
+            raise UsageError(f"there is no option {flag}{_perhaps(flag, names)}")
+        option = options[names[flag]]
+        if option.kind.is_flag and joined:
+            if word.startswith("--"):
+                raise UsageError(f"{flag} takes no value")
+            rest.insert(0, f"-{value}")
+            value = ""
+        elif option.kind.is_optional and not joined:
+            value = rest.pop(0) if rest and not (rest[0].startswith("-") or _is_asset(rest[0])) else ""
+        elif not (option.kind.is_flag or joined):
+            if not rest or rest[0] in names:
+                raise UsageError(f"{flag} requires an argument: {_metavar(option)}")
+            value = rest.pop(0)
+        texts[names[flag]].append(value)
+    return texts, words
 
 
 def _perhaps(word: str, words: Iterable[str]) -> str:
@@ -135,25 +140,6 @@ def _perhaps(word: str, words: Iterable[str]) -> str:
 
     near = get_close_matches(word, words, 1)
     return f"; did you mean {near[0]}" if near else ""
-
-
-def _bind_optional(arguments: Sequence[str], options: dict[str, Option]) -> list[str]:
-    """Join an option whose value is optional to its value, if it has one, for an asset may follow it.
-
-    The next word is its value unless it is an option or has the suffix of an asset.
-    """
-    flags = {flag for name, option in options.items() if option.kind.is_optional for flag in flags_of(name, option)}
-    bound = list(arguments)
-    for place, word in enumerate(bound):
-        if word == "--":
-            break
-        if word in flags:
-            value = bound[place + 1] if place + 1 < len(bound) else "-"
-            if value.startswith("-") or _is_asset(value):
-                bound[place] = f"{word}="
-            else:
-                bound[place : place + 2] = [f"{word}={value}"]
-    return bound
 
 
 def _is_asset(name: str) -> bool:
