@@ -26,8 +26,8 @@ from voxrt.board.register_writes import (
     tell_problems,
 )
 from voxrt.board.registers import MATERIALS, REGISTERS
-from voxrt.board.scene import EMPTY_LEAF
 from voxrt.board.view import FEATURES
+from voxrt.octree.words import EMPTY
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -179,7 +179,7 @@ class RegisterDevice:
             self._write("memory_base", memory.base)
         if features["lod"]:
             self._write("lod", 0)
-        self.write_memory(0, np.array([EMPTY_LEAF], dtype=np.uint32))
+        self.write_memory(0, np.array([EMPTY], dtype=np.uint32))
         self.select_scene(0, 1)
 
     def registers(self) -> Mapping[str, int]:

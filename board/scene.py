@@ -10,6 +10,7 @@ import numpy as np
 
 from voxrt.board.errors import Refused
 from voxrt.octree import RomError, check_roots, decode
+from voxrt.octree.words import is_leaf
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,9 +18,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.board.view import Camera, Lighting, Triple
-
-EMPTY_LEAF = 0xFFFFFF00
-"""The word of empty space, report dialect."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -103,7 +101,7 @@ def octree_span(words: NDArray[np.uint32], root: int, depth: int) -> tuple[int, 
     addresses, first, end = np.array([root]), 0, 1
     for _ in range(depth):
         reached = words[addresses[addresses < len(words)]]
-        pointers = np.unique(reached[reached >> 31 == 0]).astype(np.int64)
+        pointers = np.unique(reached[~is_leaf(reached)]).astype(np.int64)
         if len(pointers) == 0:
             break
         first = min(first or int(pointers[0]), int(pointers[0]))
@@ -122,8 +120,3 @@ def frame_period(times: Sequence[float | None]) -> float | None:
     """
     known = [float(time) for time in times if time is not None]
     return None if len(known) < max(2, len(times)) else (known[-1] - known[0]) / (len(known) - 1)
-
-
-def relocate(words: NDArray[np.uint32], base: int) -> NDArray[np.uint32]:
-    """Return the words of a memory for a root at word `base`, a multiple of 8."""
-    return np.where(words >> 31 == 0, words + np.uint32(base), words)

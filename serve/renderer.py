@@ -15,11 +15,12 @@ import numpy as np
 
 from voxrt.board.errors import DeviceError, FrameDropped, Refused, TooSlow
 from voxrt.board.frame_drop import FrameDrop
-from voxrt.board.scene import EMPTY_LEAF, Scene
+from voxrt.board.scene import Scene
 from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.view import View, frame_world, refit
 from voxrt.board.view_check import check_view
 from voxrt.octree import Octree, solid_bounds
+from voxrt.octree.words import EMPTY
 from voxrt.serve.packets import FramePacket
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ _SMALLER = 4  # a device whose frames may take longer begins with frames that ha
 EMPTY_SCENE = Scene(
     "nothing",
     1,
-    np.array([EMPTY_LEAF], dtype=np.uint32),
+    np.array([EMPTY], dtype=np.uint32),
     np.full((256, 3), 24, dtype=np.uint8),
     np.zeros(256, dtype=np.bool_),
 )

@@ -10,9 +10,9 @@ import numpy as np
 
 from voxrt.board.device import Counters, Frame, Identity
 from voxrt.board.errors import DeviceError, FrameDropped, TooSlow
-from voxrt.board.scene import EMPTY_LEAF, octree_span
+from voxrt.board.scene import octree_span
 from voxrt.board.view import FEATURES
-from voxrt.octree.words import move_pointers
+from voxrt.octree.words import EMPTY, move_pointers
 from voxrt.sim import _model
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ class _Memory:
         self.mirrors = np.zeros(256, dtype=np.uint8)
         self.root, self.depth = 0, 1
         self._words = np.zeros(capacity, dtype=np.uint32)
-        self._words[0] = EMPTY_LEAF
+        self._words[0] = EMPTY
 
     def write(self, address: int, words: NDArray[np.uint32]) -> None:
         end = self._check(address, len(words))

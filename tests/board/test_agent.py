@@ -207,12 +207,12 @@ def test_the_memory_in_bursts(agent, monkeypatch):
 
 def test_registers_of_a_frame_come_in_one_message(agent):
     device = open_tcp(agent, TOKEN)
-    asked, link = [], device._registers._link
+    operations, link = [], device._registers._link
     ask = link.ask
-    link.ask = lambda operation, *rest, **named: asked.append(operation) or ask(operation, *rest, **named)
+    link.ask = lambda operation, *rest, **named: operations.append(operation) or ask(operation, *rest, **named)
     assert list(device.registers()) == list(REGISTERS)
     device.write_materials(np.zeros((256, 3), np.uint8), np.zeros(256, bool))
-    assert asked == [1, 1, 1, 1]  # all registers; hold, its status, the table
+    assert operations == [1, 1, 1, 1]  # all registers; hold, its status, the table
     device.close()
 
 

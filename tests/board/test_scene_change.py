@@ -13,12 +13,13 @@ from oracles.cuts import memory_of
 from voxrt.board.errors import DeviceError
 from voxrt.board.register_writes import decode_fields
 from voxrt.board.registers import MATERIALS, REGISTERS
-from voxrt.board.scene import EMPTY_LEAF, Scene
+from voxrt.board.scene import Scene
 from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.simulated.core import open_rtl
 from voxrt.board.simulated.model import ModelDevice
 from voxrt.board.view import View, frame_world
 from voxrt.boards.core_files import each_write
+from voxrt.octree.words import EMPTY
 
 SIZE = (32, 24)
 NAMES = {address: name for name, (address, _) in REGISTERS.items()}
@@ -61,7 +62,7 @@ def scene_of(seed, depth, words=0):
     return Scene(
         f"world {seed}",
         depth,
-        np.concatenate([used, np.full(rest, EMPTY_LEAF, dtype=np.uint32)]),
+        np.concatenate([used, np.full(rest, EMPTY, dtype=np.uint32)]),
         colours,
         np.zeros(256, dtype=bool),
     )

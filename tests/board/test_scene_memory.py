@@ -11,8 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from voxrt.board.errors import DeviceError, Refused
-from voxrt.board.scene import Scene, check_memory, relocate
+from voxrt.board.scene import Scene, check_memory
 from voxrt.board.scene_memory import SceneMemory
+from voxrt.octree.words import move_pointers
 
 
 def ignore(_stage, _done, _total):
@@ -67,7 +68,7 @@ def test_the_steps_of_a_scene_of_millions_of_words_are_longer():
     memory.load(scene(), ignore)
     new = wide_scene("new", 400_000)
     assert len(list(memory.load_in_steps(new, ignore))) == 2 * 256
-    assert (device.memory[device.root :][: len(new.words)] == relocate(new.words, device.root)).all()
+    assert (device.memory[device.root :][: len(new.words)] == move_pointers(new.words, device.root)).all()
 
 
 def test_frames_between_the_steps_of_a_large_scene():
@@ -241,6 +242,6 @@ def test_accepted_memories_are_octrees(words, depth):
 def test_relocated(blocks, eighths):
     there = scene(blocks=blocks)
     device = FakeDevice(1024)
-    device.memory[8 * eighths : 8 * eighths + len(there.words)] = relocate(there.words, 8 * eighths)
+    device.memory[8 * eighths : 8 * eighths + len(there.words)] = move_pointers(there.words, 8 * eighths)
     device.root, device.depth = 8 * eighths, there.depth
     assert device.octree() == leaves(there.words, there.depth)

