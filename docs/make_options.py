@@ -16,32 +16,17 @@ from voxrt.options.commands import COMMANDS
 from voxrt.options.render_options import RenderOptions
 
 KEYWORDS = Path(__file__).resolve().parents[1] / "voxrt" / "options" / "keywords.py"
-_HEAD = '''\
-"""The options as keywords of functions, for type checkers; ``docs/make_options.py`` writes this file."""
-
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, TypedDict
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from os import PathLike
-
-    from voxrt.octree.camera import Lighting
-    from voxrt.options.build_options import Fill, Geometry, Pow2, UpAxis
-    from voxrt.options.shared import Dialect, Engine
-    from voxrt.sim import Background, Dram
-'''
 
 
 def keywords() -> str:
-    """Give the text of the module of keywords."""
-    classes = []
+    """Give the text of the module of keywords; what it imports stays."""
+    head, *_ = KEYWORDS.read_text(encoding="utf-8").partition("\n\nclass ")
+    classes = [head]
     for table in (BuildOptions, RenderOptions):
         fields = "".join(f"    {name}: {kind}\n" for name, kind in table.__annotations__.items())
         name = table.__name__.replace("Options", "Keywords")
         classes.append(f'\n\nclass {name}(TypedDict, total=False):\n    """:class:`{table.__name__}`."""\n\n{fields}')
-    return _HEAD + "".join(classes)
+    return "".join(classes)
 
 
 def page() -> str:

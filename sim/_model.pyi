@@ -33,16 +33,10 @@ class FollowedRay(NamedTuple):
     cell: tuple[int, int, int]
     readings: list[Reading]
 
-class Surface(NamedTuple):
-    material: int
-    face: int
-    is_upper: bool
-    cell: tuple[int, int, int]
-
 class ExplainedPixel(NamedTuple):
     colour: tuple[int, int, int]
-    mirrors: list[Surface]
-    surface: Surface | None
+    mirrors: list[tuple[int, int, bool, tuple[int, int, int]]]
+    surface: tuple[int, int, bool, tuple[int, int, int]] | None
     light: Literal["none", "lit", "turned away", "shadowed"]
     part: int
     whole: int

@@ -118,8 +118,9 @@ def explain_colour(rom: Rom, path: RayPath, lighting: Lighting = PLAIN_LIGHTING)
     surface = register = None
     if found.surface is not None:
         surface = _surface(rom, *found.surface)
-        if surface.face is not None and lighting.shading == "faces":
-            register = (lighting.faces or FACES)[2 * found.surface.face + found.surface.is_upper]
+        _, axis, is_upper, _ = found.surface
+        if axis != FACE_NONE and lighting.shading == "faces":
+            register = (lighting.faces or FACES)[2 * axis + is_upper]
     brightness = found.part / found.whole
     return PixelColour(
         found.colour, lighting.shading, mirrors, surface, found.is_mean, register, found.light, brightness

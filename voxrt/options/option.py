@@ -7,6 +7,7 @@ imports no heavy library.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
@@ -96,15 +97,7 @@ class OptionConflictError(ValueError):
 
 def spell_options(text: str, spell: Callable[[str], str]) -> str:
     """Return a text with each ``{name}`` spelled as an option of that name is."""
-    return text.format_map(_Spelled(spell))
-
-
-class _Spelled(dict[str, str]):
-    def __init__(self, spell: Callable[[str], str]) -> None:
-        self._spell = spell
-
-    def __missing__(self, name: str) -> str:
-        return self._spell(name)
+    return re.sub(r"\{(\w+)\}", lambda name: spell(name[1]), text)
 
 
 def options_of(table: type) -> dict[str, Option]:

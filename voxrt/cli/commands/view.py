@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from voxrt.options.picture_commands import ViewCommand
-    from voxrt.view import Pane, Preview
+    from voxrt.view import Pane
 
 _TURNS = 72  # pictures of a turntable
 _SIZE, _WIDE = (1024, 768), (1280, 720)
@@ -48,7 +48,10 @@ def run(options: ViewCommand) -> None:
     elif options.slice:
         panes = [replace(pane, high=_below(pane, options.slice), cut=True) for pane in panes]
     size = options.size or (_SIZE if options.other is None and options.ray is None else _WIDE)
-    preview = None if options.ray is None else _preview(sources[0], panes[0], options.ray)
+    preview = None
+    if options.ray is not None:
+        camera = sources[0].camera(PREVIEW_SIZE)
+        preview = preview_of(panes[0].rom, camera, PREVIEW_SIZE, options.ray, flat=panes[0].flat)
     rows = _octant_rows(panes)
     writers: list[tuple[Path | None, Callable[[Path], None]]] = [
         (options.output, lambda file: PANE_WRITERS[file.suffix.lower()](file, panes[0])),
@@ -105,10 +108,6 @@ def _pane(source: Source, name: str, options: ViewCommand) -> Pane:
     if options.overlay:
         pane = replace(pane, triangles=scene_triangles(source.scene, source.rom.grid))
     return pane
-
-
-def _preview(source: Source, pane: Pane, ray: tuple[int, int]) -> Preview:
-    return preview_of(pane.rom, source.camera(PREVIEW_SIZE), PREVIEW_SIZE, ray, flat=pane.flat)
 
 
 def _octant_rows(panes: list[Pane]) -> list[tuple[str, str]]:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import MISSING
+from shutil import get_terminal_size
 from textwrap import wrap
 from typing import TYPE_CHECKING
 
@@ -107,11 +107,4 @@ def _paragraph(text: str) -> str:
 
 
 def _width() -> int:
-    try:
-        columns = int(os.environ.get("COLUMNS", "")) or os.get_terminal_size().columns
-    except (ValueError, OSError):
-        try:
-            columns = os.get_terminal_size().columns
-        except OSError:
-            columns = 100
-    return max(60, min(columns, _WIDEST))
+    return max(60, min(get_terminal_size((100, 24)).columns, _WIDEST))

@@ -6,6 +6,7 @@ Programs rely on the names of the fields: new ones may come, none changes.
 from __future__ import annotations
 
 import math
+from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -17,7 +18,7 @@ from voxrt.voxelize import SceneWarning  # noqa: TC001
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from voxrt.building.fitting import BudgetFit, InteriorFit
+    from voxrt.building.fitting import BudgetFit
     from voxrt.building.result import BuildResult
     from voxrt.sim import Camera, RenderCost
     from voxrt.views.pictures import Picture
@@ -162,14 +163,10 @@ def build_report(result: BuildResult, seconds: dict[str, float]) -> BuildReport:
         seconds=seconds,
         render=None if result.preview is None else render_result(result.preview),
         budget=None if result.budget is None else budget_entry(result.budget),
-        interior=None if result.interior is None else _interior_entry(result.interior),
+        interior=None if result.interior is None else InteriorEntry(**asdict(result.interior)),
         baked=result.bake,
         frames=None if animation is None else FramesEntry(list(animation.roots), animation.words_alone),
     )
-
-
-def _interior_entry(interior: InteriorFit) -> InteriorEntry:
-    return InteriorEntry(interior.material, interior.hidden, interior.words_before)
 
 
 def budget_entry(budget: BudgetFit) -> BudgetEntry:

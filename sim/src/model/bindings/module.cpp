@@ -51,7 +51,7 @@ constexpr int kBounceLimit = 15;
 constexpr int32_t kSizeLimit = 1 << 14;
 constexpr int kThreadLimit = 1024;
 
-NamedTuple rendered_pixels, traced_rays, followed_ray, reading_type, explained_pixel, surface_type;
+NamedTuple rendered_pixels, traced_rays, followed_ray, reading_type, explained_pixel;
 
 // A memory with words of its own, so that nobody changes them after they are verified.
 class OwnedMemory {
@@ -250,8 +250,8 @@ nb::object explain_ray(const OwnedMemory& memory, const Palette& materials, cons
     PixelAccount account;
     const Pixel pixel = trace_pixel(memory.verified(), shading, {}, origin.data(), direction.data(), &account);
     const auto to_tuple = [](const Surface& met) {
-        return surface_type(met.material, met.face, met.is_upper,
-                            nb::make_tuple(met.cell[0], met.cell[1], met.cell[2]));
+        return nb::make_tuple(met.material, met.face, met.is_upper,
+                              nb::make_tuple(met.cell[0], met.cell[1], met.cell[2]));
     };
     nb::list mirrors_met;
     for (const Surface& met : account.mirrors)
@@ -337,7 +337,6 @@ NB_MODULE(_model, m) {
         NamedTuple(m, "FollowedRay", {"material", "face", "cell", "readings"}, "What Memory.follow() returns.");
     reading_type =
         NamedTuple(m, "Reading", {"address", "word", "level", "corner", "axis", "time"}, "A word that a ray read.");
-    surface_type = NamedTuple(m, "Surface", {"material", "face", "is_upper", "cell"}, "A surface that a ray met.");
     explained_pixel =
         NamedTuple(m, "ExplainedPixel", {"colour", "mirrors", "surface", "light", "part", "whole", "is_mean"},
                    "What Memory.explain() returns.");
