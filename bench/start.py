@@ -100,8 +100,8 @@ def main() -> None:
     rows = {
         "`python -c pass`": (sys.executable, "-c", "pass"),
         "`python -c 'import numpy'`": (sys.executable, "-c", "import numpy"),
-        "`python -c 'import cyclopts'`": (sys.executable, "-c", "import cyclopts"),
         "`voxrt --version`": (*VOXRT, "--version"),
+        "`voxrt --help`": (*VOXRT, "--help"),
         "`voxrt build --help`": (*build, "--help"),
         "tetrahedron, depth 4": (*build, "tetrahedron.obj", "--depth", "4", "--json", "-o", "small"),
     }

@@ -21,6 +21,7 @@ sys.path[:0] = [str(HERE), str(HERE / "walk")]
 import check_pictures  # noqa: E402 - they stand beside this file
 import draw  # noqa: E402
 import make_measured  # noqa: E402
+import make_options  # noqa: E402
 import make_reference  # noqa: E402
 
 project = "voxrt"
@@ -63,6 +64,7 @@ sphinx_gallery_conf = {
 # Pages that are written anew with every build.
 draw.main(HERE / "walk" / "pictures")
 make_reference.write(HERE / "reference")
+make_options.write(HERE / "reference")
 measured = make_measured.write(HERE / "measured")
 
 PAGES = {"rtl/README.md": "rtl", "rtl/generated/registers.md": "registers"}

@@ -144,7 +144,7 @@ def write(folder: Path) -> None:
     """Write every page that is not there yet as it should be."""
     folder.mkdir(exist_ok=True)
     wanted = {folder / f"{package}.rst": text for package, text in pages().items()}
-    for old in set(folder.glob("*.rst")) - set(wanted):
+    for old in set(folder.glob("voxrt*.rst")) - set(wanted):
         old.unlink()
     for path, text in wanted.items():
         if not path.exists() or path.read_text(encoding="utf-8") != text:

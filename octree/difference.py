@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from voxrt.octree import _native
 from voxrt.octree.octree import Octree
-from voxrt.octree.query import as_bounds
+from voxrt.octree.query import Corner, as_bounds
 from voxrt.voxelize.arguments import instance
-
-if TYPE_CHECKING:
-    from voxrt.octree.query import Corner
 
 
 @dataclass(frozen=True, slots=True)

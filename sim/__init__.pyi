@@ -26,6 +26,8 @@ from voxrt.sim.path import RayPath as RayPath
 from voxrt.sim.path import Reading as Reading
 from voxrt.sim.path import follow_pixel as follow_pixel
 from voxrt.sim.path import follow_ray as follow_ray
+from voxrt.sim.pixel_colour import PixelColour as PixelColour
+from voxrt.sim.pixel_colour import explain_colour as explain_colour
 from voxrt.sim.ray_query import RayHits as RayHits
 from voxrt.sim.ray_query import cast_rays as cast_rays
 from voxrt.sim.rendering import Engine as Engine

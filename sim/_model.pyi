@@ -1,6 +1,6 @@
 # The exact model, native; src/model/bindings/module.cpp documents it.
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +33,15 @@ class FollowedRay(NamedTuple):
     cell: tuple[int, int, int]
     readings: list[Reading]
 
+class ExplainedPixel(NamedTuple):
+    colour: tuple[int, int, int]
+    mirrors: list[tuple[int, int, bool, tuple[int, int, int]]]
+    surface: tuple[int, int, bool, tuple[int, int, int]] | None
+    light: Literal["none", "lit", "turned away", "shadowed"]
+    part: int
+    whole: int
+    is_mean: bool
+
 class Stop:
     def __init__(self) -> None: ...
     def set(self) -> None: ...
@@ -61,6 +70,19 @@ class Memory:
     ) -> RenderedPixels: ...
     def trace(self, origins: NDArray[np.int32], directions: NDArray[np.int32], threads: int = 0) -> TracedRays: ...
     def follow(self, origin: NDArray[np.int32], direction: NDArray[np.int32]) -> FollowedRay: ...
+    def explain(
+        self,
+        materials: NDArray[np.uint8],
+        origin: NDArray[np.int32],
+        direction: NDArray[np.int32],
+        *,
+        flat: bool = False,
+        brightness: NDArray[np.uint8] | None = None,
+        light: NDArray[np.int32] | None = None,
+        ambient: int = 0,
+        bounces: int = 0,
+        mirrors: NDArray[np.uint8] | None = None,
+    ) -> ExplainedPixel: ...
 
 class Band(NamedTuple):
     camera: NDArray[np.int32]

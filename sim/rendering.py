@@ -26,6 +26,8 @@ from voxrt.sim.samples import join_samples, put_background
 from voxrt.voxelize.arguments import choice, instance, real, text, whole, whole_array
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from voxrt.octree.camera import Camera, Lighting
@@ -139,18 +141,19 @@ def render(
     choice("engine", engine, get_args(Engine))
     if engine == "model" and dram is not None:
         raise SimulatorError("the model has no external memory: leave dram out, or render with --engine rtl")
-    rom, cameras, size = _checked(rom, camera, size, lighting=lighting, samples=samples, background=background)
-    root = whole("root", root, 0, len(rom.octree.words) - 1)
-    lod = _checked_lod(rom, lighting, lod)
-    return join_samples(
-        [
-            _render_one(
-                rom, one, size, lighting, engine=engine, threads=threads, config=config, dram=dram, root=root, lod=lod
-            )
-            for one in cameras
-        ],
-        background,
+    frames = _prepare(
+        rom,
+        camera,
+        size,
+        lighting=lighting,
+        samples=samples,
+        background=background,
+        threads=threads,
+        config=config,
+        root=root,
+        lod=lod,
     )
+    return join_samples(frames(engine, dram), background)
 
 
 def check(
@@ -193,24 +196,24 @@ def check(
     >>> check(rom, frame_scene(rom, (32, 32)), (32, 32)).wrong_pixels
     0
     """
-    rom, cameras, size = _checked(rom, camera, size, lighting=lighting, samples=samples, background=background)
-    root = whole("root", root, 0, len(rom.octree.words) - 1)
-    lod = _checked_lod(rom, lighting, lod)
-    hardware: Engine = "rtl"
-    rtl, model = (
-        [
-            _render_one(
-                rom, one, size, lighting, engine=engine, threads=threads, config=config, dram=memory, root=root, lod=lod
-            )
-            for one in cameras
-        ]
-        for engine, memory in ((hardware, dram), ("model", None))
+    frames = _prepare(
+        rom,
+        camera,
+        size,
+        lighting=lighting,
+        samples=samples,
+        background=background,
+        threads=threads,
+        config=config,
+        root=root,
+        lod=lod,
     )
+    rtl, model = frames("rtl", dram), frames("model", None)
     wrong = np.any([_apart(hardware, exact) for hardware, exact in zip(rtl, model, strict=True)], axis=0)
     return EngineCheck(rtl=join_samples(rtl, background), model=join_samples(model, background), wrong=wrong)
 
 
-def _checked(
+def _prepare(
     rom: Rom,
     camera: Camera,
     size: tuple[int, int],
@@ -218,41 +221,41 @@ def _checked(
     lighting: Lighting,
     samples: int,
     background: Background | None,
-) -> tuple[Rom, tuple[Camera, ...], tuple[int, int]]:
-    """Check what both engines are asked; give the memory with its background, and the cameras of the samples."""
-    instance("rom", rom, Rom)
-    width, height = whole_array("size", size, (2,), np.int64, low=1, high=_FRAME_LIMIT).tolist()
-    if whole("samples", samples, 1, max(SAMPLES)) not in SAMPLES:
-        raise ValueError(f"samples must be {', '.join(map(str, SAMPLES))}, not {samples}")
-    _check_directions(camera, (width, height))
-    _check_lighting(lighting)
-    rom = put_background(rom, background)
-    cameras = sample_cameras(camera, (width, height), samples)
-    for one in cameras[1:]:
-        _check_directions(one, (width, height))
-    return rom, cameras, (width, height)
-
-
-def _render_one(
-    rom: Rom,
-    camera: Camera,
-    size: tuple[int, int],
-    lighting: Lighting,
-    *,
-    engine: Engine,
     threads: int,
     config: str,
-    dram: Dram | None,
     root: int,
     lod: float,
-) -> Frame:
-    scale = lod_scale(camera, lod) if lod else 0
-    if engine == "model":
-        shown = replace(rom, octree=frame_octree(rom.octree, root))
-        return _render_model(shown, camera, size, lighting, threads=whole("threads", threads, 0, 1024), scale=scale)
-    return render_hardware(
-        rom, camera, size, lighting, config=text("config", config), dram=dram, root=root, scale=scale, lod=lod
-    )
+) -> Callable[[Engine, Dram | None], list[Frame]]:
+    """Check what both engines are asked; return what renders the samples of a frame by one of them."""
+    instance("rom", rom, Rom)
+    width, height = whole_array("size", size, (2,), np.int64, low=1, high=_FRAME_LIMIT).tolist()
+    size = width, height
+    if whole("samples", samples, 1, max(SAMPLES)) not in SAMPLES:
+        raise ValueError(f"samples must be {', '.join(map(str, SAMPLES))}, not {samples}")
+    _check_directions(camera, size)
+    check_lighting(lighting)
+    shown = put_background(rom, background)
+    cameras = sample_cameras(camera, size, samples)
+    for one in cameras[1:]:
+        _check_directions(one, size)
+    root = whole("root", root, 0, len(rom.octree.words) - 1)
+    lod = _checked_lod(rom, lighting, lod)
+
+    def frames(engine: Engine, dram: Dram | None) -> list[Frame]:
+        scales = [lod_scale(one, lod) if lod else 0 for one in cameras]
+        if engine == "model":
+            count, alone = whole("threads", threads, 0, 1024), replace(shown, octree=frame_octree(rom.octree, root))
+            return [
+                _render_model(alone, one, size, lighting, threads=count, scale=scale)
+                for one, scale in zip(cameras, scales, strict=True)
+            ]
+        name = text("config", config)
+        return [
+            render_hardware(shown, one, size, lighting, config=name, dram=dram, root=root, scale=scale, lod=lod)
+            for one, scale in zip(cameras, scales, strict=True)
+        ]
+
+    return frames
 
 
 def _apart(one: Frame, other: Frame) -> NDArray[np.bool_]:
@@ -309,7 +312,8 @@ def _checked_lod(rom: Rom, lighting: Lighting, lod: float) -> float:
     return lod
 
 
-def _check_lighting(lighting: Lighting) -> None:
+def check_lighting(lighting: Lighting) -> None:
+    """Refuse a lighting that the engines cannot have; SimulatorError says why."""
     if not 0 <= lighting.bounces <= BOUNCE_LIMIT:
         raise SimulatorError(f"{lighting.bounces} reflections are not 0 … {BOUNCE_LIMIT}")
     if lighting.faces is not None and not (

@@ -32,7 +32,8 @@ RETURNED = {
     "voxrt.views.depth_likeness.LikenessAtDepth",
     "voxrt.octree.Census", "voxrt.octree.Difference", "voxrt.octree.Fit", "voxrt.octree.Leaves", "voxrt.octree.Octant",
     "voxrt.octree.Region", "voxrt.octree.SurfaceChange", "voxrt.sim.Comparison", "voxrt.sim.EngineCheck",
-    "voxrt.sim.Frame", "voxrt.sim.Likeness", "voxrt.sim.RayHits", "voxrt.sim.Reading", "voxrt.sim.RenderCost",
+    "voxrt.sim.Frame", "voxrt.sim.Likeness",
+    "voxrt.sim.PixelColour", "voxrt.sim.RayHits", "voxrt.sim.Reading", "voxrt.sim.RenderCost",
     "voxrt.sim.View", "voxrt.view.DrawnRay", "voxrt.view.Preview",
 }  # fmt: skip
 """Values that a function returns: the function has the example."""

@@ -26,6 +26,9 @@ MAY_IMPORT = {
 INSIDE_VOXRT = ("options", "sources", "views", "plans", "building", "boards", "cli")
 """The folders of ``voxrt/``, each of which imports itself and those before it; modules beside them import none."""
 
+INSIDE_CLI = ("terminal", "results", "schemas", "inputs", "line", "commands", "run", "start")
+"""The folders and modules of ``voxrt/cli/``, in the same order."""
+
 INSIDE_SOURCES = {
     "voxelize/src": ("work", "grid", "scene", "coverage", "holes", "mesh", "tiles", "colour", "bindings"),
     "octree/src": ("words", "pool", "build", "files", "query", "sight", "budget", "bindings"),
@@ -128,15 +131,16 @@ def test_rooms_import_in_one_direction(graph):
     assert not wrong, "\n".join(wrong)
 
 
-def test_the_folders_of_voxrt_import_in_one_direction(graph):
+@pytest.mark.parametrize(("above", "order"), [("voxrt", INSIDE_VOXRT), ("voxrt.cli", INSIDE_CLI)])
+def test_the_folders_of_voxrt_import_in_one_direction(graph, above, order):
     def place(module: str) -> int:
-        _, folder, *_ = (*module.split("."), "", "")
-        return INSIDE_VOXRT.index(folder) if folder in INSIDE_VOXRT else -1
+        folder = module.removeprefix(f"{above}.").split(".")[0]
+        return order.index(folder) if module.startswith(f"{above}.") and folder in order else -1
 
     wrong = [
         f"{name} imports {target}"
         for name, targets in graph.items()
-        if name.startswith("voxrt.") and name != "voxrt.__main__"
+        if name.startswith("voxrt.") and name not in {"voxrt.__main__", above}
         for target in targets
         if place(target) > place(name)
     ]

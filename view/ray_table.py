@@ -54,7 +54,8 @@ def describe_end(rom: Rom | None, path: RayPath) -> str:
     if path.cell is None:
         return "nothing: the ray leaves the world"
     x, y, z = path.cell
-    side = f"its {'xyz'[path.face]} side" if path.face != FACE_NONE else "from within"
+    sign = "" if path.face == FACE_NONE else "-+"[path.direction[path.face] < 0]
+    side = f"its {sign}{'xyz'[path.face]} side" if sign else "from within"
     return f"voxel {x}, {y}, {z}, {side}: {_name(rom, path.material)}"
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from copy import copy
 from functools import cached_property
-from hashlib import blake2b
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
@@ -126,6 +125,8 @@ class BlockVoxelizer:
     @property
     def key(self) -> str:
         """A digest of all that decides the voxels, as 32 hexadecimal digits."""
+        from hashlib import blake2b  # noqa: PLC0415 - slow to import, and most builds have no tiles
+
         digest = blake2b(self._parts.fill.encode(), digest_size=16)
         for argument in self._native_arguments.values():
             _feed(digest, argument)

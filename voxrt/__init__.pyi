@@ -26,6 +26,7 @@ from voxrt.octree import differing_regions as differing_regions
 from voxrt.octree.camera import Camera as Camera
 from voxrt.octree.camera import Lighting as Lighting
 from voxrt.options.build_options import BuildOptions as BuildOptions
+from voxrt.options.render_options import RenderOptions as RenderOptions
 from voxrt.outputs import OutputError as OutputError
 from voxrt.sim import Frame as Frame
 from voxrt.sim import NoSuchConfigurationError as NoSuchConfigurationError

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from math import isqrt
 from typing import TYPE_CHECKING
 
@@ -35,5 +34,7 @@ def lod_scale(camera: Camera, cell: float = 1.0) -> int:
     >>> lod_scale(Camera(position=(0, 0, 0), look=(0, 0, 8000), right=(-16, 0, 0), up=(0, 16, 0)), cell=0.5)
     131072
     """
+    from fractions import Fraction  # noqa: PLC0415 - slow to import, and most pictures do without
+
     square = sum(component * component for component in camera.right) * Fraction(cell) ** 2
     return min((1 << LOD_SCALE_BITS) - 1, isqrt((1 << 2 * LOD_SCALE_BITS) // square)) if square else 0

@@ -80,7 +80,11 @@ def test_exact_conversions_are_made():
         (lambda: voxrt.render(TREE), TypeError, "rom must be a Rom, not Octree"),
         (lambda: voxrt.render(ROM, engine="gpu"), ValueError, "engine must be 'rtl' or 'model'"),
         (lambda: voxrt.render(ROM, size=(0, 5), engine="model"), ValueError, r"size\[0\] must be an integer"),
-        (lambda: voxrt.render(ROM, size=(5,), engine="model"), ValueError, r"size must have shape \(2,\)"),
+        (
+            lambda: voxrt.render(ROM, size=(5,), engine="model"),
+            ValueError,
+            "size must be a width and a height in pixels",
+        ),
         (lambda: sim.render(ROM, CAMERA, (8, 8), engine="model", threads=-1), ValueError, "threads must be"),
         (lambda: sim.frame_scene(TREE, (8, 8)), TypeError, "rom must be a Rom"),
         (lambda: voxrt.aim_camera(ROM, (8, 8), look=(0, 0, 0.5)), ValueError, r"look\[2\] must be an integer"),

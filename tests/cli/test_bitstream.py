@@ -7,8 +7,8 @@ import pytest
 
 import voxrt as package
 from voxrt.boards.bitstream import BaseDesign, Memory, PlacedBoard, board_names
-from voxrt.cli.bitstream import read_memory, summary_rows
-from voxrt.cli.bitstream_results import BitstreamResult
+from voxrt.cli.commands.bitstream import read_memory, summary_rows
+from voxrt.cli.results.bitstream_results import BitstreamResult
 from voxrt.octree import coarsen
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"

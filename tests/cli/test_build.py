@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from voxrt.cli.results import BuildReport
+from voxrt.cli.results.build_results import BuildReport
 from voxrt.voxelize import DEFAULT_COLOURS
 
 
@@ -308,4 +308,4 @@ def test_colours_bound_what_paint_is_reduced_to(voxrt, folder):
         assert manifest["source"]["settings"]["colours"] == most
     finished = voxrt("build", "rainbow.ply", "--colours", "255")
     assert finished.code == 2
-    assert "255 is not 1 to 254" in finished.error
+    assert "--colours must be an integer 1 … 254, not 255" in finished.error

@@ -8,7 +8,7 @@ import msgspec
 import pytest
 from PIL import Image
 
-from voxrt.cli.memory_results import CompareResult
+from voxrt.cli.results.memory_results import CompareResult
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ import msgspec
 import pytest
 
 import voxrt as library
-from voxrt.cli.memory_results import ConvertResult
+from voxrt.cli.results.memory_results import ConvertResult
 
 
 @pytest.fixture

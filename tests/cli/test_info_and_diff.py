@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from voxrt import Material, Rom
-from voxrt.cli.memory_results import DiffResult, InfoResult, RegionEntry
+from voxrt.cli.results.memory_results import DiffResult, InfoResult
 from voxrt.export import write_rom
-from voxrt.octree import BOARDS, from_dense
+from voxrt.octree import BOARDS, Region, from_dense
 from voxrt.voxelize import EMPTY, Grid
 
 
@@ -60,11 +60,11 @@ def test_diff(voxrt):
     finished = voxrt("diff", "before.mem", "after.mem", "--json")
     assert finished.code == 0
     told = msgspec.json.decode(finished.out, type=DiffResult, strict=True)
-    regions = [
-        RegionEntry(((0, 0, 0), (1, 1, 1)), 0, 0, 1),
-        RegionEntry(((7, 0, 0), (8, 1, 1)), 0, 1, 0),
-        RegionEntry(((7, 7, 0), (8, 8, 1)), 1, 0, 0),
-    ]
+    regions = (
+        Region(((0, 0, 0), (1, 1, 1)), 0, 0, 1),
+        Region(((7, 0, 0), (8, 1, 1)), 0, 1, 0),
+        Region(((7, 7, 0), (8, 8, 1)), 1, 0, 0),
+    )
     assert told == DiffResult(3, 1, 1, 1, ((0, 0, 0), (8, 8, 1)), regions)
 
 

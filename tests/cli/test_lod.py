@@ -64,7 +64,7 @@ def test_what_does_not_go_together_is_told_in_one_line(voxrt):
     assert "--lod-cell is of --lod; give both" in finished.error
     finished = voxrt("render", "noise.mem", "--lod", "--lod-cell", "-2")
     assert finished.code == 2
-    assert "-2 is not between 0 and 1024 pixels" in finished.error
+    assert "--lod-cell must be a finite number above 0 and below 1024, not -2" in finished.error
     finished = voxrt("build", "noise.mem", "--lod", "--dialect", "msb")
     assert finished.code == 2
     assert "--lod has its own dialect, and msb has no mean materials" in finished.error

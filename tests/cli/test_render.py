@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from voxrt.cli.results import RenderResult
+from voxrt.cli.results.build_results import RenderResult
 
 MODEL = ("--engine", "model", "--size", "64x48")
 
@@ -144,14 +144,14 @@ def test_check_counts_wrong_pixels(voxrt):
 @pytest.mark.usefixtures("ray_tracer", "built")
 def test_check_fails_where_the_engines_differ(voxrt, monkeypatch):
     module = sys.modules["voxrt.sim.rendering"]
-    render = module._render_one
+    render = module._render_model
 
-    def wrong(*arguments, engine, **options):
-        frame = render(*arguments, engine=engine, **options)
-        frame.face[7, 5] ^= engine == "model"
+    def wrong(*arguments, **options):
+        frame = render(*arguments, **options)
+        frame.face[7, 5] ^= 1
         return frame
 
-    monkeypatch.setattr(module, "_render_one", wrong)
+    monkeypatch.setattr(module, "_render_model", wrong)
     finished = voxrt("render", "house.mem", "--size", "64x48", "--check", "--json")
     assert finished.code == 5
     assert json.loads(finished.out)["wrong_pixels"] == 1

@@ -11,7 +11,9 @@ from voxrt.cli.schemas import schema
 MANUAL = Path(__file__).resolve().parents[2] / "docs" / "commands.md"
 
 
-@pytest.mark.parametrize("name", ["BuildReport", "RenderResult", "TraceResult", "ReadingEntry"])
+@pytest.mark.parametrize(
+    "name", ["BuildReport", "RenderResult", "TraceResult", "ReadingEntry", "PixelColour", "Surface"]
+)
 def test_the_manual_names_every_field(name):
     text = MANUAL.read_text()
     for field in schema()[name]["properties"]:

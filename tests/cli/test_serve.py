@@ -171,8 +171,8 @@ def test_a_server_for_others_wants_a_token(folder):
 @pytest.mark.parametrize(
     ("arguments", "code", "said"),
     [
-        (["serve", "--port", "65536"], 2, "--port 65536 is not 0 to 65535"),
-        (["serve", "--depth", "17"], 2, "--depth 17 is not 1 to 16"),
+        (["serve", "--port", "65536"], 2, "--port must be an integer 0 … 65535, not 65536"),
+        (["serve", "--depth", "17"], 2, "--depth must be an integer 1 … 16, not 17"),
         (["serve", "--device", "abacus"], 2, "there are model, sim, serial:PORT and tcp://BOARD:PORT"),
         (["serve", "--device", "tcp://board"], 5, "tcp://board is no address of a board; name it as tcp://BOARD:PORT"),
         (["serve", "--device", "tcp://127.0.0.1:1"], 5, "127.0.0.1:1 does not answer"),

@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+import json
+import shutil
+from pathlib import Path
+
 import msgspec
+import numpy as np
 import pytest
+from PIL import Image
 
 from voxrt import read_rom
-from voxrt.cli.memory_results import TraceResult
+from voxrt.cli.results.memory_results import TraceResult
 from voxrt.octree import material_at
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 
 def test_what_a_ray_reads(voxrt, folder):
@@ -21,7 +29,8 @@ def test_what_a_ray_reads(voxrt, folder):
     assert result.face in {"x", "y", "z"}
     for_people = voxrt("trace", "house.mem", "--pixel", "32,24", "--size", "64x48")
     assert for_people.err == ""
-    lines = for_people.out.splitlines()
+    lines, colour = (part.splitlines() for part in for_people.out.split("The colour of the pixel:\n"))
+    assert f"colour     #{bytes(result.colour.rgb).hex()}" in colour[-1]
     assert f"reads      {len(result.readings)} words" in for_people.out
     for number, reading in enumerate(result.readings, 1):
         line = lines[len(lines) - len(result.readings) + number - 1].split()
@@ -49,11 +58,37 @@ def test_a_miss_and_a_camera_within_a_solid(voxrt, folder):
 
 
 @pytest.mark.parametrize(
+    "lighting",
+    [
+        (),
+        ("--shading", "report"),
+        ("--shading", "flat"),
+        ("--light", "60,90,60", "--ambient", "30"),
+        ("--light", "60,90,60", "--shading", "report"),
+        ("--bounces", "3"),
+    ],
+    ids=" ".join,
+)
+def test_the_colour_is_that_of_the_rendered_pixel(voxrt, folder, lighting):
+    shutil.copy(EXAMPLES / "courtyard.glb", folder)
+    assert voxrt("build", "courtyard.glb", "--depth", "6").code == 0
+    size = ("--size", "160x120")
+    assert voxrt("render", "courtyard.mem", *size, "--engine", "model", *lighting).code == 0
+    with Image.open("courtyard.png") as picture:
+        pixels = picture.convert("RGB")
+    for column, row in np.random.default_rng(len(lighting)).integers(0, (160, 120), (12, 2)).tolist():
+        arguments = ("trace", "courtyard.mem", "--pixel", f"{column},{row}", *size, *lighting)
+        colour = pixels.getpixel((column, row))
+        assert f"colour     #{bytes(colour).hex()}, " in voxrt(*arguments).out.splitlines()[-1]
+        assert tuple(json.loads(voxrt(*arguments, "--json").out)["colour"]["rgb"]) == colour
+
+
+@pytest.mark.parametrize(
     ("arguments", "problem"),
     [
         (("--pixel", "640,0"), "pixel 640,0 lies outside the picture of 640x480; columns go to 639, rows to 479"),
         (("--pixel", "1"), "'1' is not COLUMN,ROW"),
-        (("--pixel", "-1,2"), "--pixel requires an argument"),
+        (("--pixel", "-1,2"), "'-1,2' is not COLUMN,ROW"),
         ((), "--pixel"),
     ],
 )

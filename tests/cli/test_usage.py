@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shutil
 import subprocess
-import sys
 
 import pytest
 
@@ -12,32 +11,38 @@ import pytest
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["frob"], 'Unknown command "frob"'),
-        (["build"], "ASSET requires an argument"),
+        (["frob"], "there is no command 'frob'"),
+        (["build"], "ASSET is missing"),
         (["build", "house.obj", "--bogus"], "--bogus"),
-        (["build", "house.obj", "--dept", "3"], "Did you mean --depth?"),
+        (["build", "house.obj", "--dept", "3"], "did you mean --depth"),
+        (["build", "house.obj", "--depth"], "--depth requires an argument: N"),
+        (["build", "house.obj", "--depth", "--json"], "--depth requires an argument: N"),
+        (["build", "house.obj", "--depth", "3", "--depth", "4"], "--depth is given 2 times"),
+        (["build", "house.obj", "--json=yes"], "--json"),
+        (["build", "house.obj", "-x"], "-x"),
+        (["info", "house.obj", "dog.usda"], "dog.usda is one argument too many"),
         (["build", "house.obj", "--depth", "3.5"], "'3.5' is not a whole number"),
-        (["build", "house.obj", "--depth", "0"], "--depth: 0 is not 1 to 16"),
-        (["build", "house.obj", "--depth", "17"], "--depth: 17 is not 1 to 16"),
+        (["build", "house.obj", "--depth", "0"], "--depth must be an integer 1 … 16, not 0"),
+        (["build", "house.obj", "--depth", "17"], "--depth must be an integer 1 … 16, not 17"),
         (["build", "house.obj", "--memory", "much"], "'much' is not a size such as 4G or 512M"),
-        (["build", "house.obj", "--memory", "1M"], "1M is not 64M to 4194303T"),
-        (["build", "house.obj", "--memory", "9" * 60], "is not 64M to 4194303T"),
+        (["build", "house.obj", "--memory", "1M"], "--memory must be 64M to 4194303T"),
+        (["build", "house.obj", "--memory", "9" * 60], "--memory must be 64M to 4194303T"),
         (["build", "house.obj", "--depth", "3", "--voxel-size", "1"], "exclude each other"),
-        (["build", "house.obj", "--voxel-size", "-1"], "not a positive number"),
-        (["build", "house.obj", "--voxel-size", "nan"], "not a finite number"),
-        (["build", "house.obj", "--unit", "0"], "not a positive number"),
-        (["build", "house.obj", "--unit", "inf"], "not a finite number"),
+        (["build", "house.obj", "--voxel-size", "-1"], "--voxel-size must be a finite number above 0, not -1"),
+        (["build", "house.obj", "--voxel-size", "nan"], "--voxel-size must be a finite number above 0, not nan"),
+        (["build", "house.obj", "--unit", "0"], "--unit must be a finite number above 0, not 0"),
+        (["build", "house.obj", "--unit", "inf"], "--unit must be a finite number above 0, not inf"),
         (["build", "house.obj", "--unit", "inch"], "'inch' is not a number"),
-        (["build", "house.obj", "--budget", "0"], "not a number of words"),
+        (["build", "house.obj", "--budget", "0"], "--budget must be an integer 1 "),
         (["build", "house.obj", "--budget", "9", "--board", "pynq-z1"], "exclude each other"),
         (["build", "house.obj", "--board", "abacus"], "there are icepi-zero, pynq-z1, ulx3s-12f"),
-        (["build", "house.obj", "--time", "inf"], "not a finite number"),
+        (["build", "house.obj", "--time", "inf"], "--time must be a finite number, not inf"),
         (["build", "house.obj", "--fill", "half"], '"solid", "surface"'),
         (["build", "house.obj", "--size", "640x480x3"], "is not WIDTHxHEIGHT"),
         (["build", "house.obj", "--voxel-size", "cm"], "is not a number"),
         (["build", "house.obj", "--up", "w"], '"x", "y", "z"'),
-        (["build", "house.obj", "--size", "0x480"], "is not between 1x1 and"),
-        (["build", "house.obj", "--size", "99999x99999"], "is not between 1x1 and"),
+        (["build", "house.obj", "--size", "0x480"], "--size[0] must be an integer 1 … 16384, not 0"),
+        (["build", "house.obj", "--size", "99999x99999"], "--size[0] must be an integer 1 … 16384, not 99999"),
         (["build", "house.obj", "--preview", "picture.jpg"], "ends in .png"),
         (["build", "house.obj", "-o", "house.mtl"], "house.mtl is a file, not a folder"),
         (["build", "house.obj", "-o", "house.mtl/deeper"], "house.mtl is a file, not a folder"),
@@ -125,15 +130,6 @@ def test_help_has_an_example(voxrt, command):
     assert finished.code == 0
     assert f"Example: voxrt {command}" in finished.out
     assert finished.err == ""
-
-
-def test_help_imports_no_heavy_library(folder):
-    code = (
-        "import sys\nfrom voxrt.cli import main\nsys.argv = ['voxrt', '--help']\n"
-        "try:\n    main()\nfinally:\n"
-        "    assert not {'numpy', 'PIL', 'trimesh', 'pxr', 'voxrt.building.pipeline'} & set(sys.modules)"
-    )
-    subprocess.run([sys.executable, "-c", code], cwd=folder, check=True, capture_output=True)
 
 
 def test_version(voxrt):

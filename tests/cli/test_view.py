@@ -76,7 +76,7 @@ def test_pictures_of_everything(voxrt, built):
 @pytest.mark.parametrize("suffix", ["gif", "mp4"])
 def test_turntables(voxrt, built, suffix, monkeypatch):
     ffmpeg = pytest.importorskip("imageio_ffmpeg", reason="it writes MP4") if suffix == "mp4" else None
-    monkeypatch.setattr("voxrt.cli.view._TURNS", 6)
+    monkeypatch.setattr("voxrt.cli.commands.view._TURNS", 6)
     finished = voxrt("view", "house.mem", "--turntable", f"t.{suffix}", *SMALL)
     assert finished.code == 0, finished.err
     if ffmpeg is None:
@@ -113,7 +113,7 @@ def test_pyvista_reads_memories(built, pyvista):
         (("house.obj", "-o", "o.stl"), 2, "end in .vox, .npz, .ply, .glb, .vtu, .html"),
         (("house.obj", "-o", "house.mtl/o.vtu"), 2, "is a file, not a folder"),
         (("house.obj", "--turntable", "o.avi"), 2, "end in .gif or .mp4"),
-        (("house.obj", "--level-limit", "17"), 2, "17 is not 0 to 16"),
+        (("house.obj", "--level-limit", "17"), 2, "--level-limit must be an integer 0 … 16, not 17"),
         (("house.obj", "--slice", "x:3"), 2, "'x:3' is not AXIS=VOXEL"),
         (("house.obj", "--slice", "x=0"), 2, "'x=0' is not AXIS=VOXEL"),
         (("house.obj", "--slice", "x=3", "--clip", "x"), 2, "--clip and --slice exclude each other"),

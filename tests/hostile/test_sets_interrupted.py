@@ -23,7 +23,8 @@ INTERRUPTIONS = int(os.environ.get("VOXRT_INTERRUPTIONS", "10"))
 DRIVER = """
 import json, os, shutil, signal, sys
 from voxrt.cli.start import start
-import voxrt.cli.app, voxrt.cli.build, voxrt.cli.convert, voxrt.cli.upload, voxrt.cli.view, voxrt.boards.board_scenes
+from voxrt.cli.commands import build, convert, upload, view
+import voxrt.boards.board_scenes, voxrt.cli.run
 import PIL.PngImagePlugin, trimesh, voxrt.export.blob, voxrt.board.simulated.model, voxrt.board.scene_memory
 arguments, count, signals = json.loads(sys.argv[1])
 events = moment = number = 0
@@ -175,7 +176,7 @@ print(json.dumps(results))
 
 def test_interrupted_while_modules_are_imported(folder):
     finished = subprocess.run(
-        [sys.executable, "-c", IMPORTS, "60"], cwd=folder, capture_output=True, text=True, check=True, timeout=600
+        [sys.executable, "-c", IMPORTS, "30"], cwd=folder, capture_output=True, text=True, check=True, timeout=600
     )
     *interrupted, (last, _) = json.loads(finished.stdout)
     assert last == 0

@@ -11,7 +11,7 @@ from PIL import Image
 
 from voxrt import BuildOptions, build, export
 from voxrt.building.fitting import fit_budget
-from voxrt.cli import progress
+from voxrt.cli.terminal import progress
 from voxrt.plans.estimate import BuildEstimate, estimate_build
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
@@ -87,7 +87,7 @@ def test_version(typed, version):
 
 def test_help_is_a_command(typed):
     assert typed("help").out == typed("--help").out
-    assert typed("help", "build").out == typed("build", "--help").out
+    assert typed("help", "info").out == typed("info", "--help").out
     finished = typed("help", "frob")
     assert (finished.code, "name one of build, " in finished.err) == (2, True)
 

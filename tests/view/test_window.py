@@ -206,7 +206,7 @@ def test_the_hit_of_a_ray_is_in_the_table_and_in_the_middle(rom, opened, size):
     window = opened([view.Pane(rom)], size, preview=preview_of(rom, camera, (40, 30), (20, 15)))
     table = texts(window)["table"].splitlines()
     assert table[0].startswith("pixel 20,15")
-    assert table[1].startswith("hits voxel 5, 10, 4, its y")
+    assert table[1].startswith("hits voxel 5, 10, 4, its +y")
     assert "0xFFFFFF02" in table[-1]
     below, pane = (
         next(renderer for renderer in window.plotter.renderers if name in renderer.actors) for name in ("table", "ray")

@@ -12,7 +12,7 @@ from voxrt.board.errors import Refused
 from voxrt.board.scene import Scene
 from voxrt.export import Blob, read_any
 from voxrt.octree import RomError
-from voxrt.options.build_options import PREVIEW_SIZE
+from voxrt.options.shared import PREVIEW_SIZE
 from voxrt.serve.scene_process import ChildReader
 from voxrt.views.pictures import animation_camera
 from voxrt.voxelize.assets import SUFFIXES

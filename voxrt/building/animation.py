@@ -30,7 +30,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from voxrt.octree import Octree
-    from voxrt.options.build_options import BuildKeywords, BuildOptions
+    from voxrt.options.build_options import BuildOptions
+    from voxrt.options.keywords import BuildKeywords
     from voxrt.plans.estimate import BuildEstimate
     from voxrt.sources.frames import FrameSources
     from voxrt.sources.source import Asset

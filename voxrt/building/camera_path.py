@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING
 
 from voxrt import sim
 from voxrt.errors import ToolError
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from voxrt.octree import Rom
-    from voxrt.octree.camera import Camera, Lighting
-    from voxrt.options.build_options import Engine
-    from voxrt.sim import Dram, Frame
+    from voxrt.octree.camera import Camera
+    from voxrt.options.render_options import RenderOptions
+    from voxrt.sim import Frame
 
 _MOST_CAMERAS = 1 << 20
 _KEYS = {"position", "look", "right", "up"}
@@ -29,26 +29,20 @@ _KEYS = {"position", "look", "right", "up"}
 
 @dataclass(frozen=True, eq=False, slots=True)
 class PictureJob:
-    """What all pictures of a path have in common: the arguments of :func:`voxrt.render` but for the camera.
+    """What all pictures of a path have in common.
 
     Attributes
     ----------
-    rom, size, engine, config, lighting, samples, background, dram, root, lod
-        As :func:`voxrt.render` takes them.
+    rom
+        The memory.
+    options
+        How it is rendered.
     check
         Whether both engines render each picture.
     """
 
     rom: Rom
-    size: tuple[int, int]
-    engine: Engine
-    config: str
-    lighting: Lighting
-    samples: int
-    background: tuple[int, int, int] | Literal["transparent"] | None
-    dram: Dram | None
-    root: int
-    lod: float
+    options: RenderOptions
     check: bool
 
 
@@ -117,14 +111,11 @@ def take_picture(job: PictureJob, number: int, camera: Camera) -> PathPicture:
     ToolError
         It cannot be rendered.
     """
-    arguments: dict[str, Any] = {field.name: getattr(job, field.name) for field in fields(job)}
-    both = arguments.pop("check")
     try:
-        if not both:
-            return PathPicture(number, render(camera=camera, **arguments), None)
-        engine = arguments.pop("engine")
-        checked = sim.check(camera=camera, **arguments)
-        return PathPicture(number, getattr(checked, engine), checked.wrong_pixels)
+        if not job.check:
+            return PathPicture(number, render(job.rom, camera, job.options), None)
+        checked = sim.check(job.rom, camera, **job.options.for_engines())
+        return PathPicture(number, getattr(checked, job.options.engine), checked.wrong_pixels)
     except Exception as error:
         raise ToolError(f"camera {number}: {error}") from error
 

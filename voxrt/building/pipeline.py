@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from voxrt.building.result import BuildResult
-    from voxrt.options.build_options import BuildKeywords, BuildOptions, Fill, UpAxis
+    from voxrt.options.build_options import BuildOptions, Fill, UpAxis
+    from voxrt.options.keywords import BuildKeywords
     from voxrt.plans.by_workers import ClusterProgress
     from voxrt.plans.estimate import BuildEstimate
     from voxrt.sources.source import Asset, Source

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from voxrt import sim
-from voxrt.options.build_options import PREVIEW_SIZE
+from voxrt.options.shared import PREVIEW_SIZE
 from voxrt.views.viewpoint import ViewpointError, aim_camera, authored_camera, authored_lighting, stands_inside
 from voxrt.voxelize import SceneWarning
 

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 from voxrt import export
 from voxrt.building.view import preview
 from voxrt.export.atomic import write_together
+from voxrt.options.build_options import BuildOptions
+from voxrt.options.option import options_of
 from voxrt.outputs import writing
 from voxrt.sim import SimulatorError
 from voxrt.views.viewpoint import ViewpointError
@@ -18,12 +20,7 @@ if TYPE_CHECKING:
 
     from voxrt.building.output_files import OutputFiles
     from voxrt.building.result import BuildResult
-    from voxrt.options.build_options import BuildOptions
     from voxrt.plans.stage_clock import StageClock
-
-
-_NAMED = ("fill", "interior", "geometry", "pow2", "up", "unit", "time", "animation", "variants", "colours", "bake")
-"""The options that every manifest names."""
 
 
 def named_settings(options: BuildOptions) -> dict[str, str | int | float | bool | None]:
@@ -35,12 +32,13 @@ def named_settings(options: BuildOptions) -> dict[str, str | int | float | bool 
     >>> named_settings(BuildOptions(colours=8))["colours"]
     8
     """
-    settings: dict[str, str | int | float | bool | None] = {name: getattr(options, name) for name in _NAMED}
-    settings["variants"] = ", ".join(options.variants) or None
-    if options.ignore:
-        settings["ignore"] = ", ".join(options.ignore)
-    if options.bounds is not None:
-        settings["bounds"] = ", ".join(f"{value:g}" for value in options.bounds)
+    settings: dict[str, str | int | float | bool | None] = {}
+    for name, option in options_of(BuildOptions).items():
+        value = getattr(options, name)
+        if option.manifest == "always" or (option.manifest == "changed" and value != option.default):
+            if isinstance(value, tuple):
+                value = ", ".join(one if isinstance(one, str) else f"{one:g}" for one in value) or None
+            settings[name] = value
     return settings
 
 

@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import sys
 from enum import IntEnum
-from functools import partial
+from importlib import import_module
 from typing import TYPE_CHECKING, NoReturn
 
 import voxrt
-from voxrt.cli.errors import UsageError
-from voxrt.cli.messages import complain, discard_output, set_verbosity
-from voxrt.cli.plain_build import read_plain_build
+from voxrt.cli.line.command_line import HELP_FLAGS, asks_for_help, find_command, read_options
+from voxrt.cli.terminal.errors import UsageError
+from voxrt.cli.terminal.messages import complain, discard_output, print_answer, set_verbosity
+from voxrt.options.commands import COMMANDS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
     from types import FrameType
+
+
+VERSION_FLAGS = ("--version", "-V")
 
 
 class ExitCode(IntEnum):
@@ -42,8 +47,7 @@ def run(arguments: Sequence[str]) -> ExitCode:
     """Run a command line and tell its exit code; an error is one line on standard error."""
     try:
         _take_signals()
-        command = read_plain_build(arguments) or read_with_parser(arguments)
-        command()
+        run_command(arguments)
         sys.stdout.flush()
     except KeyboardInterrupt:
         complain("interrupted: every file is as it was, or complete")
@@ -51,8 +55,6 @@ def run(arguments: Sequence[str]) -> ExitCode:
     except Terminated as signalled:
         complain("terminated: every file is as it was, or complete")
         return ExitCode(128 + signalled.args[0])
-    except SystemExit:
-        return ExitCode.PIPE_CLOSED  # rich, showing help, found that nobody reads
     except BrokenPipeError:
         discard_output()  # nobody reads it any more
         return ExitCode.PIPE_CLOSED
@@ -65,26 +67,37 @@ def run(arguments: Sequence[str]) -> ExitCode:
     return ExitCode.DONE
 
 
-def read_with_parser(arguments: Sequence[str]) -> Callable[[], object]:
-    """Read a command line.
+def run_command(arguments: Sequence[str]) -> None:
+    """Run a command line.
 
     Raises
     ------
     UsageError
         It cannot be understood.
     """
-    import cyclopts  # noqa: PLC0415 - slow to import, and most builds do without
+    if not arguments or arguments[0] in HELP_FLAGS:
+        from voxrt.cli.line.help_text import overview  # noqa: PLC0415 - most commands do without
 
-    from voxrt.cli.app import app  # noqa: PLC0415 - as above
-    from voxrt.cli.arguments import bind_preview  # noqa: PLC0415 - as above
+        print_answer(overview())
+        return
+    if arguments[0] in VERSION_FLAGS:
+        print_answer(f"{voxrt.__version__}\n")
+        return
+    name, *words = arguments
+    find_command(name)
+    if asks_for_help(words):
+        from voxrt.cli.line.help_text import command_help  # noqa: PLC0415 - as above
 
-    try:
-        command, bound, _ = app.parse_args(bind_preview(arguments))
-    except cyclopts.CycloptsError as error:
-        raise UsageError(str(error)) from error
-    reporting = bound.arguments.get("reporting")
+        print_answer(command_help(name, full=False))
+        return
+    options = read_options(name, words)
+    reporting = getattr(options, "reporting", None)
     set_verbosity(0 if reporting is None else reporting.verbose - reporting.quiet)
-    return partial(command, *bound.args, **bound.kwargs)
+    command = import_module(f"voxrt.cli.commands.{name}")
+    if not gc.isenabled():
+        gc.freeze()  # what is imported stays: collections need not visit it
+        gc.enable()
+    command.run(options)
 
 
 def _take_signals() -> None:
@@ -121,9 +134,7 @@ def _explain(error: Exception, arguments: Sequence[str]) -> ExitCode:
         case ImportError():
             problem = f"this installation of voxrt is not complete: {problem}; install it again"
         case UsageError():
-            from voxrt.cli.app import app  # noqa: PLC0415 - slow to import
-
-            command = [name for name in arguments[:1] if name in app]
+            command = [name for name in arguments[:1] if name in COMMANDS]
             problem, code = f"{problem.rstrip('.')}; see {' '.join(['voxrt', *command, '--help'])}", ExitCode.USAGE
         case voxrt.OutputError() | voxrt.ViewpointError() | voxrt.NoSuchConfigurationError():
             code = ExitCode.USAGE

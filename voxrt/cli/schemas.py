@@ -6,9 +6,9 @@ from typing import Any
 
 import msgspec
 
-from voxrt.cli.board_results import ServeResult, UploadResult
-from voxrt.cli.memory_results import CompareResult, ConvertResult, DiffResult, InfoResult, TraceResult
-from voxrt.cli.results import BuildReport, RenderResult
+from voxrt.cli.results.board_results import ServeResult, UploadResult
+from voxrt.cli.results.build_results import BuildReport, RenderResult
+from voxrt.cli.results.memory_results import CompareResult, ConvertResult, DiffResult, InfoResult, TraceResult
 
 _RESULTS = (
     BuildReport,

@@ -6,32 +6,26 @@ traceback. Standard streams that the caller closed are opened again, so that no 
 
 from __future__ import annotations
 
-import _signal  # type: ignore[import-not-found]  # signal brings enum, during whose import Ctrl-C prints a traceback
 import gc
 import os
+import signal
 import sys
 
-TYPE_CHECKING = False  # for the same reason
+TYPE_CHECKING = False  # typing is slow to import
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from types import FrameType
     from typing import NoReturn
 
 _VERSION_FLAGS = (["--version"], ["-V"])
-_GARBAGE = 1 << 17
-"""Objects made between two collections of garbage: imports make many and leave none, and took a quarter longer. A
-server lives longer than that, and takes USUAL_GARBAGE."""
-USUAL_GARBAGE = gc.get_threshold()[0]
-"""What Python begins with."""
-
-_INTERRUPTED = 128 + _signal.SIGINT
+_INTERRUPTED = 128 + signal.SIGINT
 
 
 def start(arguments: Sequence[str]) -> NoReturn:
     """Run a command line and exit."""
-    if _signal.getsignal(_signal.SIGINT) is not _signal.SIG_IGN:
-        _signal.signal(_signal.SIGINT, _leave)
-    gc.set_threshold(_GARBAGE)
+    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
+        signal.signal(signal.SIGINT, _leave)
+    gc.disable()  # until the command is imported: imports make many objects and leave none
     _open_closed_streams()
     if arguments[-1:] in _VERSION_FLAGS and arguments[:-1] in ([], ["build"]):
         _print_version()
@@ -41,10 +35,8 @@ def start(arguments: Sequence[str]) -> NoReturn:
         code = int(run(arguments))
     except KeyboardInterrupt:  # once more, while the first was reported
         code = _INTERRUPTED
-    if _signal.getsignal(_signal.SIGINT) is not _signal.SIG_IGN:
-        _signal.signal(_signal.SIGINT, _signal.SIG_DFL)
-    if gc.get_threshold()[0] != USUAL_GARBAGE:
-        gc.freeze()  # the process ends: a last search for garbage would take as long as a small build
+    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
     sys.exit(code)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from hashlib import blake2b
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -24,6 +23,8 @@ def tiles_key(voxelizer: BlockVoxelizer) -> str:
 
     It is of the scene on its grid, and of the native modules that make tiles of it.
     """
+    from hashlib import blake2b  # noqa: PLC0415 - slow to import, and most builds have no tiles
+
     digest = blake2b(voxelizer.key.encode(), digest_size=16)
     for module in (voxelize_native, octree_native):
         digest.update(Path(str(module.__file__)).read_bytes())

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 
 from voxrt import sim
 from voxrt.export import Blob
 from voxrt.octree import Rom
-from voxrt.octree.camera import PLAIN_LIGHTING, refit
-from voxrt.options.backgrounds import read_background
-from voxrt.options.build_options import PREVIEW_SIZE
+from voxrt.octree.camera import refit
+from voxrt.options.option import merge
+from voxrt.options.render_options import RenderOptions
+from voxrt.options.shared import PREVIEW_SIZE
 from voxrt.outputs import check_file, writing
 from voxrt.views.viewpoint import aim_camera
 from voxrt.voxelize.arguments import instance, whole_array
@@ -24,8 +25,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from voxrt.octree.camera import Camera, Lighting
-    from voxrt.sim import Background, Dram, Engine, Frame
+    from voxrt.octree.camera import Camera
+    from voxrt.options.keywords import RenderKeywords
+    from voxrt.sim import Engine, Frame
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -59,17 +61,8 @@ class Picture:
 def render(
     rom: Rom,
     camera: Camera | None = None,
-    *,
-    size: tuple[int, int] = PREVIEW_SIZE,
-    engine: Engine = "rtl",
-    config: str = "tiny",
-    lighting: Lighting | None = None,
-    samples: int = 1,
-    background: Background | str | None = None,
-    threads: int = 0,
-    dram: Dram | None = None,
-    root: int = 0,
-    lod: float = 0.0,
+    options: RenderOptions | None = None,
+    **keywords: Unpack[RenderKeywords],
 ) -> Frame:
     """Render a picture of a memory.
 
@@ -79,29 +72,10 @@ def render(
         The memory and its materials.
     camera
         The camera. None shows the whole scene from the front right and above.
-    size
-        Width and height in pixels.
-    engine
-        ``"rtl"`` is the verilated ray tracer, which counts its clock cycles. ``"model"`` is the exact C++ model. Both
-        give the same pixels.
-    config
-        The configuration of the ray tracer for ``"rtl"``.
-    lighting
-        Brightness of faces, light and mirrors. For light and mirrors the ray tracer needs a configuration that has
-        them. None takes the default brightness of faces.
-    samples
-        Rays per pixel on each axis, 1, 2 or 4, averaged in linear light.
-    background
-        ``"light"``, ``"dark"``, ``"transparent"``, ``"#rrggbb"``, or sRGB, 0 … 255 each. None takes the memory's.
-    threads
-        Threads of the model; 0 takes one per core.
-    dram
-        The external memory of a configuration that has caches. None takes the default of :class:`voxrt.sim.Dram`.
-    root
-        The word of the memory that is the root of what is rendered; 0 but for the frames of an animation.
-    lod
-        Level of detail: the width in pixels of the widest cell that rays stop at; True is 1. 0: they go down to the
-        leaves. The memory is built with ``lod=True``.
+    options
+        How to render; None for the defaults.
+    **keywords
+        The options of :class:`RenderOptions` by name, such as `size` and `engine`. They take precedence over `options`.
 
     Returns
     -------
@@ -125,20 +99,8 @@ def render(
     (48, 64, 3)
     """
     rom = instance("rom", rom, Rom)
-    return sim.render(
-        rom,
-        camera or aim_camera(rom, size),
-        size,
-        engine=engine,
-        lighting=lighting or PLAIN_LIGHTING,
-        samples=samples,
-        background=None if background is None else read_background("background", background),
-        config=config,
-        threads=threads,
-        dram=dram,
-        root=root,
-        lod=lod,
-    )
+    options = merge("render", RenderOptions, options, keywords)
+    return sim.render(rom, camera or aim_camera(rom, options.size), engine=options.engine, **options.for_engines())
 
 
 def animation_camera(blob: Blob, size: tuple[int, int]) -> Camera:

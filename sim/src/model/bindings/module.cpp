@@ -51,7 +51,7 @@ constexpr int kBounceLimit = 15;
 constexpr int32_t kSizeLimit = 1 << 14;
 constexpr int kThreadLimit = 1024;
 
-NamedTuple rendered_pixels, traced_rays, followed_ray, reading_type;
+NamedTuple rendered_pixels, traced_rays, followed_ray, reading_type, explained_pixel;
 
 // A memory with words of its own, so that nobody changes them after they are verified.
 class OwnedMemory {
@@ -128,21 +128,28 @@ Lod lod_of(const OwnedMemory& memory, const std::optional<Means>& means, int sca
     return {means->data(), static_cast<uint32_t>(scale)};
 }
 
-nb::object render_frame(const OwnedMemory& memory, const Palette& materials, const Registers& registers, int width,
-                        int height, int threads, const std::string& instructions, bool flat,
-                        const std::optional<Faces>& brightness, const std::optional<Position>& light, int ambient,
-                        int bounces, const std::optional<Flags>& mirrors, const std::optional<Means>& means,
-                        int lod_scale, double seconds, const Stop* stop) {
+Shading shading_of(const Palette& materials, bool flat, const std::optional<Faces>& brightness,
+                   const std::optional<Position>& light, int ambient, int bounces,
+                   const std::optional<Flags>& mirrors) {
     if (ambient < 0 || ambient > 255)
         throw std::invalid_argument("ambient is " + std::to_string(ambient) + ", not 0 ... 255");
     if (bounces < 0 || bounces > kBounceLimit)
         throw std::invalid_argument("bounces is " + std::to_string(bounces) + ", not 0 ... 15");
-    const uint8_t no_mirrors[256] = {};
+    static constexpr uint8_t no_mirrors[256] = {};
     Shading shading{materials.data(), mirrors ? mirrors->data() : no_mirrors, bounces, flat, {}, {}};
     if (brightness)
         std::copy_n(brightness->data(), 6, shading.faces.emplace().begin());
     if (light)
         shading.light = Light{{(*light)(0), (*light)(1), (*light)(2)}, static_cast<uint8_t>(ambient)};
+    return shading;
+}
+
+nb::object render_frame(const OwnedMemory& memory, const Palette& materials, const Registers& registers, int width,
+                        int height, int threads, const std::string& instructions, bool flat,
+                        const std::optional<Faces>& brightness, const std::optional<Position>& light, int ambient,
+                        int bounces, const std::optional<Flags>& mirrors, const std::optional<Means>& means,
+                        int lod_scale, double seconds, const Stop* stop) {
+    const Shading shading = shading_of(materials, flat, brightness, light, ambient, bounces, mirrors);
     const Lod lod = lod_of(memory, means, lod_scale);
     if (lod.on() && (light || bounces != 0))
         throw std::invalid_argument("level of detail does not go with a light or reflections");
@@ -209,15 +216,20 @@ nb::object to_python(WideKey value) {
            nb::cast(static_cast<uint64_t>(value));
 }
 
+void check_direction(const Position& direction) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (direction(axis) <= -kDirectionLimit || direction(axis) >= kDirectionLimit)
+            throw std::invalid_argument("the direction reaches " + std::to_string(direction(axis)) + " on axis " +
+                                        "xyz"[axis] + ", which is not below 2**20");
+}
+
 nb::object follow_ray(const OwnedMemory& memory, const Position& origin, const Position& direction) {
     Line line{};
     for (int axis = 0; axis < 3; ++axis) {
         line.origin[axis] = origin(axis);
         line.direction[axis] = direction(axis);
-        if (direction(axis) <= -kDirectionLimit || direction(axis) >= kDirectionLimit)
-            throw std::invalid_argument("the direction reaches " + std::to_string(direction(axis)) + " on axis " +
-                                        "xyz"[axis] + ", which is not below 2**20");
     }
+    check_direction(direction);
     nb::list readings;
     const Hit<WideKey> hit = Ray<WideKey>(memory.verified(), line).trace([&](const Reading<WideKey>& reading) {
         if (readings.size() % 4096 == 4095 && PyErr_CheckSignals() != 0)
@@ -227,6 +239,28 @@ nb::object follow_ray(const OwnedMemory& memory, const Position& origin, const P
                                      reading.face, to_python(reading.time)));
     });
     return followed_ray(hit.material, hit.face, nb::make_tuple(hit.cell[0], hit.cell[1], hit.cell[2]), readings);
+}
+
+nb::object explain_ray(const OwnedMemory& memory, const Palette& materials, const Position& origin,
+                       const Position& direction, bool flat, const std::optional<Faces>& brightness,
+                       const std::optional<Position>& light, int ambient, int bounces,
+                       const std::optional<Flags>& mirrors) {
+    const Shading shading = shading_of(materials, flat, brightness, light, ambient, bounces, mirrors);
+    check_direction(direction);
+    PixelAccount account;
+    const Pixel pixel = trace_pixel(memory.verified(), shading, {}, origin.data(), direction.data(), &account);
+    const auto to_tuple = [](const Surface& met) {
+        return nb::make_tuple(met.material, met.face, met.is_upper,
+                              nb::make_tuple(met.cell[0], met.cell[1], met.cell[2]));
+    };
+    nb::list mirrors_met;
+    for (const Surface& met : account.mirrors)
+        mirrors_met.append(to_tuple(met));
+    const nb::object surface = account.surface ? nb::object(to_tuple(*account.surface)) : nb::none();
+    static constexpr const char* lights[] = {"none", "lit", "turned away", "shadowed"};
+    return explained_pixel(nb::make_tuple(pixel.colour[0], pixel.colour[1], pixel.colour[2]), mirrors_met, surface,
+                           lights[static_cast<int>(account.light)], to_python(account.brightness.part),
+                           to_python(account.brightness.whole), account.is_mean);
 }
 
 using Colours = nb::ndarray<const uint8_t, nb::shape<-1, -1, 3>, nb::c_contig, nb::device::cpu>;
@@ -303,6 +337,9 @@ NB_MODULE(_model, m) {
         NamedTuple(m, "FollowedRay", {"material", "face", "cell", "readings"}, "What Memory.follow() returns.");
     reading_type =
         NamedTuple(m, "Reading", {"address", "word", "level", "corner", "axis", "time"}, "A word that a ray read.");
+    explained_pixel =
+        NamedTuple(m, "ExplainedPixel", {"colour", "mirrors", "surface", "light", "part", "whole", "is_mean"},
+                   "What Memory.explain() returns.");
     nb::class_<Stop>(m, "Stop", "Ends frames for good, from any thread.")
         .def(nb::init<>())
         .def("set", &Stop::set, "End the frames that were given this object, and all further ones.");
@@ -336,7 +373,17 @@ NB_MODULE(_model, m) {
              "address, word, level, corner (lowest voxel of its octant), axis of the plane crossed last or 3, and "
              "time,\n"
              "the T of that plane. Word 0 is kept between rays and not among them. ValueError: a direction out of "
-             "range.");
+             "range.")
+        .def(
+            "explain", &explain_ray, nb::arg("materials"), nb::arg("origin"), nb::arg("direction"), nb::kw_only(),
+            nb::arg("flat") = false, nb::arg("brightness") = nb::none(), nb::arg("light") = nb::none(),
+            nb::arg("ambient") = 0, nb::arg("bounces") = 0, nb::arg("mirrors") = nb::none(),
+            "Explain the colour of the pixel of one ray, with the arguments of render and follow. Returns its colour;\n"
+            "the surfaces met, the mirrors first: material, face, whether that looks along the positive axis, cell;\n"
+            "the light on the last: none, lit, turned away or shadowed; its brightness, part / whole; and is_mean: "
+            "the\n"
+            "bounces were used up, so that the colour is the mean of the surfaces. ValueError: a direction out of "
+            "range.");
     nb::class_<OwnedViews>(m, "FitViews", "Pictures of a scene from all around: fit_views.h.")
         .def(nb::init<const OwnedMemory&, const Palette&, bool, int>(), nb::arg("memory"), nb::arg("materials"),
              nb::arg("flat"), nb::arg("threads") = 0, "materials: (256, 3) uint8 sRGB, entry 0 the background.")

@@ -1,7 +1,5 @@
 #include "pixel.h"
 
-#include "ray.h"
-
 #include <algorithm>
 
 namespace voxrt::sim {
@@ -15,10 +13,8 @@ void scale_colour(const uint8_t* from, WideKey part, WideKey whole, uint8_t* to)
         to[channel] = static_cast<uint8_t>((2 * from[channel] * part + whole) / (2 * whole));
 }
 
-struct Square {
-    WideKey part, whole; // of one component, of the length
-};
-Square square_of(const int64_t vector[3], int axis) {
+// The square of one component of a vector as a part of the square of its length.
+Brightness square_of(const int64_t vector[3], int axis) {
     WideKey squares[3], whole = 0;
     for (int i = 0; i < 3; ++i)
         whole += squares[i] = WideKey{vector[i]} * vector[i];
@@ -43,9 +39,8 @@ bool is_shadowed(const octree::VerifiedMemory& memory, const Line& shadow_ray, u
 }
 
 template <class Key>
-void light_colour(const octree::VerifiedMemory& memory, const Shading& shading, const Ray<Key>& ray,
-                  const Hit<Key>& hit, const Line& line, Pixel& pixel) {
-    const uint8_t* const surface = shading.materials + 3 * hit.material;
+Brightness light_brightness(const octree::VerifiedMemory& memory, const Shading& shading, const Ray<Key>& ray,
+                            const Hit<Key>& hit, const Line& line, uint32_t& words_read, LightOnSurface& state) {
     const Light& light = *shading.light;
     Line shadow_ray{{}, {}, kLightUnit};
     for (int axis = 0; axis < 3; ++axis) {
@@ -55,23 +50,24 @@ void light_colour(const octree::VerifiedMemory& memory, const Shading& shading, 
         shadow_ray.direction[axis] = 2 * int64_t{light.position[axis]} - shadow_ray.origin[axis];
     }
     const int64_t towards = shadow_ray.direction[hit.face];
-    const bool faces_away = towards == 0 || (towards > 0) == (line.direction[hit.face] > 0);
-    const bool dark =
-        faces_away || (key_fits_64(shadow_ray) ? is_shadowed<int64_t>(memory, shadow_ray, pixel.words_read)
-                                               : is_shadowed<WideKey>(memory, shadow_ray, pixel.words_read));
-    const Square square = square_of(shadow_ray.direction, hit.face);
-    if (shading.flat || shading.faces)
-        scale_colour(surface,
-                     face_brightness(shading, hit.face, line.direction[hit.face]) * (dark ? light.ambient : 256),
-                     WideKey{kFaceUnit} * 256, pixel.colour);
-    else if (dark || 256 * square.part <= light.ambient * square.whole)
-        scale_colour(surface, light.ambient, 256, pixel.colour);
+    if (towards == 0 || (towards > 0) == (line.direction[hit.face] > 0))
+        state = LightOnSurface::turned_away;
     else
-        scale_colour(surface, square.part, square.whole, pixel.colour);
+        state = (key_fits_64(shadow_ray) ? is_shadowed<int64_t>(memory, shadow_ray, words_read)
+                                         : is_shadowed<WideKey>(memory, shadow_ray, words_read))
+                    ? LightOnSurface::shadowed
+                    : LightOnSurface::lit;
+    const bool dark = state != LightOnSurface::lit;
+    if (shading.flat || shading.faces)
+        return {face_brightness(shading, hit.face, line.direction[hit.face]) * (dark ? light.ambient : 256),
+                WideKey{kFaceUnit} * 256};
+    const Brightness square = square_of(shadow_ray.direction, hit.face);
+    return dark || 256 * square.part <= light.ambient * square.whole ? Brightness{light.ambient, 256} : square;
 }
 
 template <class Key>
-Pixel traced(const octree::VerifiedMemory& memory, const Shading& shading, const Lod& lod, Line line) {
+Pixel traced(const octree::VerifiedMemory& memory, const Shading& shading, const Lod& lod, Line line,
+             PixelAccount* account) {
     Pixel pixel{{}, 0, kFaceNone, 0};
     uint32_t sum[3] = {0, 0, 0};
     Ray<Key> ray(memory, line);
@@ -82,18 +78,33 @@ Pixel traced(const octree::VerifiedMemory& memory, const Shading& shading, const
         pixel.material = hit.material;
         pixel.face = hit.face;
         const uint8_t* const surface = shading.materials + 3 * hit.material;
+        const bool is_mirror = hit.face != kFaceNone && shading.bounces != 0 && shading.mirrors[hit.material];
+        if (account && hit.material != 0) {
+            const bool is_upper = hit.face != kFaceNone && line.direction[hit.face] < 0;
+            const Surface met{hit.material, hit.face, is_upper, {hit.cell[0], hit.cell[1], hit.cell[2]}};
+            if (is_mirror)
+                account->mirrors.push_back(met);
+            else
+                account->surface = met;
+        }
         if (hit.face == kFaceNone) {
             std::copy_n(surface, 3, pixel.colour);
             return pixel;
         }
-        if (shading.bounces == 0 || !shading.mirrors[hit.material]) {
+        if (!is_mirror) {
+            LightOnSurface light = LightOnSurface::none;
+            Brightness brightness;
             if (shading.light)
-                light_colour(memory, shading, ray, hit, line, pixel);
+                brightness = light_brightness(memory, shading, ray, hit, line, pixel.words_read, light);
             else if (shading.flat || shading.faces)
-                scale_colour(surface, face_brightness(shading, hit.face, line.direction[hit.face]), kFaceUnit,
-                             pixel.colour);
-            else if (const Square square = square_of(line.direction, hit.face); true)
-                scale_colour(surface, square.part, square.whole, pixel.colour);
+                brightness = {face_brightness(shading, hit.face, line.direction[hit.face]), kFaceUnit};
+            else
+                brightness = square_of(line.direction, hit.face);
+            scale_colour(surface, brightness.part, brightness.whole, pixel.colour);
+            if (account) {
+                account->light = light;
+                account->brightness = brightness;
+            }
             return pixel;
         }
         for (int channel = 0; channel < 3; ++channel)
@@ -102,6 +113,8 @@ Pixel traced(const octree::VerifiedMemory& memory, const Shading& shading, const
             const uint32_t mirrors = static_cast<uint32_t>(bounce) + 1;
             for (int channel = 0; channel < 3; ++channel)
                 pixel.colour[channel] = static_cast<uint8_t>((2 * sum[channel] + mirrors) / (2 * mirrors));
+            if (account)
+                account->is_mean = true;
             return pixel;
         }
         // The mirror image of the ray, from the plane on.
@@ -116,7 +129,7 @@ Pixel traced(const octree::VerifiedMemory& memory, const Shading& shading, const
 } // namespace
 
 Pixel trace_pixel(const octree::VerifiedMemory& memory, const Shading& shading, const Lod& lod, const int32_t origin[3],
-                  const int32_t direction[3]) {
+                  const int32_t direction[3], PixelAccount* account) {
     Line line{}, farthest{};
     for (int axis = 0; axis < 3; ++axis) {
         line.origin[axis] = origin[axis];
@@ -125,8 +138,8 @@ Pixel trace_pixel(const octree::VerifiedMemory& memory, const Shading& shading, 
         farthest.origin[axis] = distance + (int64_t{2 * kPositionUnit * shading.bounces} << memory.depth());
         farthest.direction[axis] = direction[axis];
     }
-    return key_fits_64(farthest) ? traced<int64_t>(memory, shading, lod, line)
-                                 : traced<WideKey>(memory, shading, lod, line);
+    return key_fits_64(farthest) ? traced<int64_t>(memory, shading, lod, line, account)
+                                 : traced<WideKey>(memory, shading, lod, line, account);
 }
 
 } // namespace voxrt::sim

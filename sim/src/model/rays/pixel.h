@@ -2,12 +2,14 @@
 #pragma once
 
 #include "lod.h"
+#include "ray.h"
 
 #include <voxrt/octree/words/verify.h>
 
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 namespace voxrt::sim {
 
@@ -37,9 +39,32 @@ struct Pixel {
     uint32_t words_read;
 };
 
+// The brightness of a surface: part / whole.
+struct Brightness {
+    WideKey part = 1, whole = 1;
+};
+
+// A surface that a ray met.
+struct Surface {
+    uint8_t material, face; // kFaceNone: the camera stands in the solid
+    bool is_upper;          // the face looks along the positive axis
+    int32_t cell[3];
+};
+
+enum class LightOnSurface : uint8_t { none, lit, turned_away, shadowed };
+
+// How a pixel came by its colour.
+struct PixelAccount {
+    std::vector<Surface> mirrors;   // in order
+    std::optional<Surface> surface; // what ended the ray; none: it left the world, or its bounces were used up
+    LightOnSurface light = LightOnSurface::none;
+    Brightness brightness;
+    bool is_mean = false; // the bounces were used up: the colour is the mean of the mirrors
+};
+
 // Traces the ray from `origin` (1/16 voxel). Components of `direction` are below kDirectionLimit. Not with lod.on()
-// where there is a light or bounces are not 0.
+// where there is a light or bounces are not 0. An account that is given is filled.
 Pixel trace_pixel(const octree::VerifiedMemory& memory, const Shading& shading, const Lod& lod, const int32_t origin[3],
-                  const int32_t direction[3]);
+                  const int32_t direction[3], PixelAccount* account = nullptr);
 
 } // namespace voxrt::sim

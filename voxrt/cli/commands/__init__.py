@@ -1,0 +1,1 @@
+"""What each command does: a module per command, whose ``run`` takes the table of its options."""

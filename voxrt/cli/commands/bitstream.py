@@ -1,0 +1,162 @@
+"""``voxrt bitstream``."""
+
+from __future__ import annotations
+
+import tempfile
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import msgspec
+
+import voxrt
+from voxrt.cli.inputs.lighting import supported
+from voxrt.cli.results.bitstream_results import BitstreamResult, bitstream_result
+from voxrt.cli.results.build_results import print_json
+from voxrt.cli.terminal.budget_messages import budget_loss, budget_text
+from voxrt.cli.terminal.errors import UsageError
+from voxrt.cli.terminal.messages import summarize, warn
+from voxrt.cli.terminal.progress import build_bar, stage_bar, transfer_bar
+from voxrt.options.notations import find_board
+from voxrt.outputs import check_folder, writing
+
+if TYPE_CHECKING:
+    from voxrt.boards.bitstream import PlacedBoard
+    from voxrt.export import Blob
+    from voxrt.options.board_commands import BitstreamCommand
+
+
+def run(options: BitstreamCommand) -> None:
+    """Make the bitstream of a board that shows a scene, turning, on its monitor."""
+    from voxrt.boards.beam import SCREEN, SMALL, fit_beam, fit_frames  # noqa: PLC0415
+    from voxrt.boards.bitstream import board_names, load_bitstream, make_bitstream  # noqa: PLC0415 - NumPy comes with it
+    from voxrt.boards.board_scenes import board_scene  # noqa: PLC0415
+    from voxrt.views.orbit import orbit  # noqa: PLC0415
+
+    if options.seed is not None and not options.rebuild:
+        raise UsageError("--seed is of the placement, which --rebuild makes; give both")
+    check_folder(options.output)
+    try:
+        board = find_board(options.board, board_names())
+    except ValueError as error:
+        raise UsageError(f"--board: {error}") from error
+    placed = _place(board, options.seed, rebuild=options.rebuild)
+    design = placed.design
+    blob, budget = read_memory(options.source, options.depth, placed)
+    features = {name for name in ("light", "mirrors") if design.core[name.capitalize()]}
+    lighting = supported(blob.lighting or voxrt.Lighting(), features)
+    roots = (0,) if blob.animation is None else blob.animation.roots
+    fit, size = (fit_frames, SMALL) if design.frame_buffer else (fit_beam, SCREEN)
+    with transfer_bar() as progress:
+        count = partial(progress, "count cycles")
+        beam = fit(blob.rom, orbit(blob.rom, size, roots=roots), lighting, design.tracer, progress=count)
+    bits = make_bitstream(placed, board_scene(blob), orbit(blob.rom, beam.size, roots=roots), lighting, beam)
+    file, report = (options.output / f"{options.source.stem}{suffix}" for suffix in (".bit", ".report.json"))
+    result = bitstream_result(blob.rom, placed, beam, file, budget)
+    _write(file, bits, report, result)
+    rows = summary_rows(result, report)
+    if budget is not None:
+        rows[-2:-2] = budget_rows(budget, options.source, result.depth, frame_buffer=design.frame_buffer)
+    summarize(f"{options.source.name}:", rows)
+    if options.load:
+        load_bitstream(placed, file)
+        summarize(f"{file.name}:", [("loaded", placed.title)])
+    if options.reporting.json:
+        print_json(result)
+
+
+def _place(name: str, seed: int | None, *, rebuild: bool) -> PlacedBoard:
+    from voxrt.boards.bitstream import read_board, rebuild_board  # noqa: PLC0415
+
+    if not rebuild:
+        return read_board(name)
+    with stage_bar(1) as begin, tempfile.TemporaryDirectory(prefix="voxrt-") as folder:
+        begin("synthesize, place and route")
+        return rebuild_board(name, Path(folder), seed)
+
+
+def read_memory(source: Path, depth: int | None, placed: PlacedBoard) -> tuple[Blob, voxrt.BudgetFit | None]:
+    """Read a memory, or build an asset for the board's budget, and give what that took.
+
+    What the bitstream cannot bring is refused.
+    """
+    from voxrt.export import Blob  # noqa: PLC0415
+    from voxrt.octree import coarsen  # noqa: PLC0415
+    from voxrt.voxelize.assets import SUFFIXES  # noqa: PLC0415
+
+    capacity, most = placed.design.capacity, placed.design.core["MaxDepth"]
+    if depth is not None and depth > most:
+        raise voxrt.DoesNotFitError(f"--depth {depth}: {placed.name} traces up to {most} levels; give --depth {most}")
+    if source.suffix.lower() in SUFFIXES:
+        with build_bar() as bar:
+            built = voxrt.build(source, depth=depth, budget=capacity, progress=bar.begin, estimated=bar.estimate)
+        warn(built.warnings)
+        if built.budget is not None and (loss := budget_loss(built.budget)):
+            warn((voxrt.SceneWarning("budget", loss),))
+        return Blob(built.rom, built.view, built.lighting), built.budget
+    if depth is not None:
+        raise UsageError(f"--depth is of assets, and {source} is a memory; leave it out")
+    blob, warnings = voxrt.read_any(source)
+    warn(warnings)
+    tree = blob.rom.octree
+    if len(tree.words) > capacity or tree.depth > most:
+        fits = next(
+            n for n in range(min(tree.depth, most), 0, -1) if len(coarsen(tree, tree.depth - n).words) <= capacity
+        )
+        remedy = f"build it with --depth {fits}, or give the asset"
+        holder = placed.name
+        if placed.design.frame_buffer and tree.depth <= most:
+            holder = f"a bitstream of {placed.name}"
+            remedy = f"write it into the running board: voxrt upload {source} --to serial:PORT"
+        raise voxrt.DoesNotFitError(
+            f"{source}: {len(tree.words):,} words and {tree.depth} levels, and {holder} holds {capacity:,} words "
+            f"and {most} levels; {remedy}"
+        )
+    return blob, None
+
+
+def _write(file: Path, bits: bytes, report: Path, result: BitstreamResult) -> None:
+    from voxrt.export.atomic import write_atomically  # noqa: PLC0415
+
+    with writing(file):
+        file.parent.mkdir(parents=True, exist_ok=True)
+        write_atomically(file, bits)
+    with writing(report):
+        write_atomically(report, msgspec.json.format(msgspec.json.encode(result), indent=1) + b"\n")
+
+
+def budget_rows(budget: voxrt.BudgetFit, source: Path, depth: int, *, frame_buffer: bool) -> list[tuple[str, str]]:
+    """Give the rows of what an asset gave up, and of how a board that has room for all of it shows it all."""
+    fit = budget.fit
+    if not (fit.changed or fit.appeared or fit.recoloured):
+        return []
+    rows = [("budget", budget_text(budget))]
+    if frame_buffer:
+        build = f"voxrt build {source} --depth {depth} -o out"
+        rows.append(("all of it", f"{build}; voxrt upload out/{source.stem}.mem --to serial:PORT"))
+    return rows
+
+
+def summary_rows(result: BitstreamResult, report: Path) -> list[tuple[str, str]]:
+    """Give the rows of the summary: names and values."""
+    width, height = result.size
+    squares = f", each pixel as {640 // width} x {640 // width}" if width < 640 else ""
+    lanes = f"{result.lanes} lane{'' if result.lanes == 1 else 's'}"
+    cycles = f"{result.cycles_per_pixel:.2f} per pixel in the slowest view; "
+    if result.lead_lines is None:
+        cycles += "whole pictures are shown, however long they take"
+    elif result.lead_lines >= 0:
+        cycles += f"rows are complete {result.lead_lines:.1f} lines before they are shown, or earlier"
+    else:
+        cycles += "some rows are repeated, because the next ones are late"
+    reached, needed = result.fmax_mhz["system"], result.clock_hz / 1e6
+    clock = f"place and route reach {reached:.1f} of {needed:.1f} MHz: the board may fail; try another --seed"
+    return [
+        ("board", f"{result.title}, {lanes}, {result.clock_hz / 1e6:.1f} MHz"),
+        *([("clock", clock)] if reached < needed else []),
+        ("scene", f"{result.words:,} of {result.capacity:,} words, depth {result.depth}"),
+        ("picture", f"{width} x {height}{squares}, {result.frames_per_second:.1f} frames per second"),
+        ("cycles", cycles),
+        ("wrote", result.bitstream),
+        ("wrote", str(report)),
+    ]

@@ -1,0 +1,171 @@
+"""``voxrt build``."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import voxrt
+from voxrt.building.pipeline import build
+from voxrt.cli.terminal.budget_messages import budget_loss, budget_text
+from voxrt.cli.terminal.errors import UsageError
+from voxrt.cli.terminal.messages import frames_row, picture_cost, summarize, tabulate, warn
+from voxrt.cli.terminal.process_age import process_age
+from voxrt.cli.terminal.progress import build_bar
+from voxrt.options.build_options import BuildOptions
+
+if TYPE_CHECKING:
+    from os import PathLike
+    from pathlib import Path
+
+    from voxrt.options.build_command import BuildCommand
+
+_NAMED = 32  # so many materials still read as a list
+
+
+def run(command: BuildCommand) -> None:
+    """Build the octree memory of an asset: NAME.mem, its manifest NAME.json and a preview picture."""
+    options = command.options
+    if not options.bake and any(
+        getattr(options, name) != getattr(BuildOptions, name) for name in ("sun", "sky", "bake_samples")
+    ):
+        raise UsageError("--sun, --sky and --bake-samples are of baked light: give --bake as well")
+    if command.board is not None:
+        if options.budget is not None:
+            raise UsageError("--budget and --board exclude each other; give one of them")
+        options = replace(options, budget=command.board)
+    if command.frames is None:
+        _check_company(command.assets, command.output, options.preview)
+    else:
+        _check_frames(command)
+    _build_all(replace(command, options=options))
+
+
+def _build_all(command: BuildCommand) -> None:
+    """Build assets one after another, or the animation of all, and say what was made."""
+    reports = []
+    waited = process_age()
+    for asset in command.assets if command.frames is None else command.assets[:1]:
+        begun = perf_counter()
+        result = _build(asset, command)
+        seconds = {"start": waited, **result.seconds}
+        seconds["rest"] = max(0.0, perf_counter() - begun - sum(result.seconds.values()))
+        waited = 0.0
+        warn(result.warnings)
+        if result.budget is not None and (loss := budget_loss(result.budget)):
+            warn((voxrt.SceneWarning("budget", loss),))
+        if command.reporting.json:
+            from voxrt.cli.results.build_results import build_report  # noqa: PLC0415 - most builds print a summary
+
+            reports.append(build_report(result, seconds))
+        else:
+            summarize(f"{asset.name}:", _rows(result))
+        if command.profile:
+            _print_profile(seconds, result.parts)
+    if command.reporting.json:
+        from voxrt.cli.results.build_results import print_json  # noqa: PLC0415 - as above
+
+        print_json(reports[0] if len(reports) == 1 else reports)
+
+
+def _check_frames(command: BuildCommand) -> None:
+    """Refuse what does not go together with the frames of an animation."""
+    options = command.options
+    excluded = {
+        "--time": options.time,
+        "--bake": options.bake or None,
+        "--board": command.board,
+        "--budget": options.budget,
+        "--scheduler": options.scheduler,
+        "--workers": options.workers,
+    }
+    for name, value in excluded.items():
+        if value is not None:
+            raise UsageError(f"{name} is not for the frames of an animation; leave it out")
+    if command.frames != "files" and len(command.assets) > 1:
+        raise UsageError(
+            f"--frames with times is of one asset, and there are {len(command.assets)}; name one, or --frames files"
+        )
+
+
+def _build(asset: Path, command: BuildCommand) -> voxrt.BuildResult:
+    """Build an asset, or the animation of one or all."""
+    assets, frames, output, options = command.assets, command.frames, command.output, command.options
+    with build_bar() as bar:
+        if frames is None:
+            return build(asset, output, options, progress=bar.begin, estimated=bar.estimate, clustered=bar.tiles)
+        made: Path | list[Path] = asset
+        if frames == "files" and (len(assets) > 1 or not asset.is_dir()):
+            from voxrt.sources.frames import natural_order  # noqa: PLC0415 - NumPy comes with it
+
+            made = sorted(assets, key=natural_order)
+        times = None if frames == "files" else voxrt.frame_times(*frames)
+        return voxrt.build_animation(made, output, options, times=times, progress=bar.begin, estimated=bar.estimate)
+
+
+def _check_company(assets: tuple[Path, ...], output: Path, preview: str | PathLike[str] | bool) -> None:
+    """Refuse several assets that would write the same files."""
+    if len(assets) == 1:
+        return
+    if not isinstance(preview, bool):
+        raise UsageError(f"--preview {preview} is one picture for {len(assets)} assets; leave the file out")
+    if output.suffix.lower() in voxrt.export.WORD_SUFFIXES and not output.is_dir():
+        raise UsageError(f"-o {output} is one file for {len(assets)} assets; name a folder")
+    from voxrt.sources.source import as_text  # noqa: PLC0415 - NumPy comes with it, and --help must be instant
+
+    names: dict[str, Path] = {}
+    for asset in assets:
+        if not asset.is_file():
+            raise voxrt.AssetError(asset, "no such file", fix="check the path; nothing was built")
+        name = as_text(asset.stem)
+        if name.casefold() in names:
+            raise UsageError(
+                f"{names[name.casefold()]} and {asset} would both be written to {output / name}.mem; build them one "
+                "by one, each with an -o of its own"
+            )
+        names[name.casefold()] = asset
+
+
+def _print_profile(seconds: dict[str, float], parts: dict[str, dict[str, float]]) -> None:
+    total = sum(seconds.values())
+    rows = [
+        row
+        for stage, took in seconds.items()
+        for row in [(stage, took), *((f"  {part}", took) for part, took in parts.get(stage, {}).items())]
+    ]
+    percents = [(name, f"{1e3 * took:.1f}", f"{100 * took / total:.0f}") for name, took in rows]
+    tabulate(("stage", "ms", "%"), [*percents, ("all", f"{1e3 * total:.1f}", "100")])
+
+
+def _rows(result: voxrt.BuildResult) -> list[tuple[str, str]]:
+    rom, total = result.rom, sum(result.seconds.values())
+    size, materials = len(rom.octree.words), rom.materials[1:]
+    voxel = f", {rom.grid.voxel_size:.4g} m each" if rom.grid else ""
+    names = ", ".join(material.name for material in materials) if len(materials) <= _NAMED else "voxrt info lists them"
+    stages = ", ".join(f"{stage} {took:.2f}" for stage, took in result.seconds.items() if took >= 0.005)
+    return [
+        ("grid", f"{1 << rom.octree.depth} voxels per side (depth {rom.octree.depth}){voxel}"),
+        ("solid", f"{result.solid_voxels:,} voxels"),
+        ("memory", f"{size:,} words, {size * 4 / 1024:,.1f} KiB"),
+        *([("frames", frames_row(result.animation, size))] if result.animation else []),
+        *([("interior", _interior(result.interior, rom))] if result.interior else []),
+        *([("baked", _baked(result.bake))] if result.bake else []),
+        *([("budget", budget_text(result.budget))] if result.budget else []),
+        ("materials", f"{len(materials)}" + (f": {names}" if materials else "")),
+        *([("preview", picture_cost(result.preview.frame, result.preview.engine))] if result.preview else []),
+        ("seconds", f"{total:.2f}" + (f": {stages}" if stages else "")),
+        *(("wrote", str(path)) for path in result.outputs.values()),
+    ]
+
+
+def _interior(interior: voxrt.InteriorFit, rom: voxrt.Rom) -> str:
+    made = "of any material" if interior.material is None else f"of {rom.materials[interior.material].name}"
+    return f"{interior.hidden:,} hidden voxels are {made}; the memory took {interior.words_before:,} words before"
+
+
+def _baked(bake: voxrt.Bake) -> str:
+    return (
+        f"{bake.voxels:,} voxels, {bake.samples} rays to the sky each; {bake.words:,} words, "
+        f"{bake.words / bake.words_before:.1f} times the {bake.words_before:,} without baked light"
+    )

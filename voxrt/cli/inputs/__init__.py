@@ -1,0 +1,1 @@
+"""What commands look at: memories, assets, configurations of the hardware."""

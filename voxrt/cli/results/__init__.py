@@ -1,0 +1,1 @@
+"""What ``--json`` prints: the shape of each command's result."""

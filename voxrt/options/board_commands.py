@@ -1,0 +1,95 @@
+"""The command lines of what runs on hardware: serve, upload, bitstream and core."""
+
+from __future__ import annotations
+
+from dataclasses import MISSING, dataclass
+from pathlib import Path
+from typing import Literal
+
+from voxrt.options.kinds import FLAG, INTEGER, file, files, one_of, text, texts, whole
+from voxrt.options.option import ARGUMENTS, Option, nested, option
+from voxrt.options.shared import CONFIG, DEPTH, HARDWARE, OUTPUT, MessageOptions, ReportOptions
+
+_NETWORK, _DEVICE = "Network", "Device"
+_PORT = Option(whole(0, 65535, "PORT"), None, _NETWORK, "")
+
+
+# A table: an option is its kind, its default and its group, then its text.
+# fmt: off
+@dataclass(frozen=True, kw_only=True)
+class ServeCommand:
+    """What ``voxrt serve`` takes."""
+
+    scenes: tuple[Path, ...] = option(files("SCENE"), (), ARGUMENTS,
+        "Blobs, memories (.mem) and assets. The first is shown at once; the page lists all. Without scenes, the "
+        "page lists examples and has a place to drop files.")
+    device: str = option(text("model|sim|serial:PORT|tcp://BOARD:PORT"), "model", _DEVICE,
+        "The renderer: the exact model, the simulated hardware, which is slow, a board at a serial line, such as "
+        "serial:/dev/ttyUSB0, whose monitor follows the page, or a PYNQ board that runs voxrt-board, such as "
+        "tcp://pynq:4810, with its token in the environment variable VOXRT_BOARD_TOKEN.")
+    config: str = CONFIG.field(default="lit", group=_DEVICE,
+        help="The configuration of the simulated hardware: tiny has no optional features, lit has all of them.")
+    host: str = option(text("ADDRESS"), "127.0.0.1", _NETWORK,
+        "Address to listen on. Every address but loopback needs a token.")
+    port: int = _PORT.field(help="TCP port of the page; 0 takes a free one.", default=8080)
+    token: str | None = option(text("TEXT"), None, _NETWORK,
+        "The token that clients must send. Where one is needed and not given, a random one is made and printed. "
+        "Other users of this machine see it in the command line.")
+    token_file: Path | None = option(file("FILE"), None, _NETWORK, "A file whose first line is the token.")
+    origin: tuple[str, ...] = option(texts("ORIGIN"), (), _NETWORK,
+        "Further origins (http://NAME:PORT) whose pages may connect, such as that of a reverse proxy. This "
+        "machine's own addresses and names need no option.")
+    legacy_port: int | None = _PORT.field(
+        help="TCP port of the legacy protocol, for the desktop client of the original project: 28 bytes in, a raw "
+        "picture of 512x512 pixels out, no token.")
+    depth: int | None = DEPTH.field(help="Levels of the octrees of assets.")
+    reporting: ReportOptions = nested(ReportOptions)
+
+
+@dataclass(frozen=True, kw_only=True)
+class UploadCommand:
+    """What ``voxrt upload`` takes."""
+
+    rom: Path = option(file("ROM"), MISSING, ARGUMENTS,
+        "A blob, or a .mem file; its manifest, the .json in the same folder, is sent with it.")
+    to: str | None = option(text("URL"), None, _DEVICE,
+        "The address of the page, with its token, as the frame server printed it. Or the serial line of a board, "
+        "such as serial:/dev/ttyUSB0, or a PYNQ board that runs voxrt-board, such as tcp://pynq:4810, with its "
+        "token in the environment variable VOXRT_BOARD_TOKEN.")
+    device: Literal["model", "sim"] | None = option(one_of(("model", "sim")), None, _DEVICE,
+        "A device of this machine, to try the upload without a server.")
+    config: str = CONFIG.field(default="lit", group=_DEVICE,
+        help="The configuration of the simulated hardware: tiny or lit.")
+    dry_run: bool = option(FLAG, False, _DEVICE, "Check everything, write nothing.")
+    reporting: ReportOptions = nested(ReportOptions)
+
+
+@dataclass(frozen=True, kw_only=True)
+class BitstreamCommand:
+    """What ``voxrt bitstream`` takes."""
+
+    source: Path = option(file("ASSET|ROM"), MISSING, ARGUMENTS,
+        "An asset, or a memory: .mem or another format, with its manifest beside it.")
+    board: str = option(text("NAME"), MISSING, HARDWARE, "Name of the board, such as ulx3s-85f.")
+    output: Path = option(file("DIR"), Path(), OUTPUT,
+        "Folder for the files. It is made if it is missing.", flags=("--output", "-o"))
+    depth: int | None = DEPTH.field(help="Levels of the octree of an asset. The default is 7.")
+    load: bool = option(FLAG, False, HARDWARE,
+        "Load the bitstream into the board that is plugged in, by openFPGALoader.")
+    rebuild: bool = option(FLAG, False, HARDWARE, "Synthesize, place and route the design anew. It takes minutes.")
+    seed: int | None = option(INTEGER, None, HARDWARE, "The seed of the placement, with {rebuild}.")
+    reporting: ReportOptions = nested(ReportOptions)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CoreCommand:
+    """What ``voxrt core`` takes."""
+
+    path: bool = option(FLAG, False, HARDWARE,
+        "Print the folder of the SystemVerilog sources. Its voxrt.f lists them in the order in which tools must "
+        "read them; its README.md is their manual.")
+    config: str | None = CONFIG.field(help="The configuration that {verilog} writes.")
+    verilog: Path | None = option(file("FILE"), None, HARDWARE,
+        "A .v to write: the configuration as one file of plain Verilog, top module voxrt_core, for tools that do "
+        "not read the SystemVerilog sources. yosys makes it.")
+    reporting: MessageOptions = nested(MessageOptions)

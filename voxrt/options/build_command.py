@@ -1,0 +1,35 @@
+"""The command line of ``voxrt build``."""
+
+from __future__ import annotations
+
+from dataclasses import MISSING, dataclass
+from pathlib import Path
+
+from voxrt.options import notations
+from voxrt.options.build_options import CONTENT, BuildOptions
+from voxrt.options.kinds import FLAG, file, files
+from voxrt.options.notations import FrameChoice
+from voxrt.options.option import ARGUMENTS, nested, option
+from voxrt.options.shared import MEMORY, OUTPUT, RUNNING, ReportOptions
+
+
+# A table: an option is its kind, its default and its group, then its text.
+# fmt: off
+@dataclass(frozen=True, kw_only=True)
+class BuildCommand:
+    """What ``voxrt build`` takes."""
+
+    assets: tuple[Path, ...] = option(files("ASSET"), MISSING, ARGUMENTS,
+        "A glTF (.gltf, .glb), OBJ, USD (.usd, .usda, .usdc, .usdz), STL or PLY file, or a scene of such files "
+        "(.toml).")
+    output: Path = option(file("DIR|FILE"), Path(), OUTPUT,
+        "Folder for the files, or the file of words itself: NAME.mem, .coe, .mif or .bin.", flags=("--output", "-o"))
+    options: BuildOptions = nested(BuildOptions)
+    frames: FrameChoice | None = option(notations.FRAMES, None, CONTENT,
+        "Build an animation: one memory whose roots are its frames. START:STOP:COUNT: so many frames, evenly from "
+        "second START up to but without STOP, so that a loop closes (glTF, USD). files: each ASSET is a frame, in "
+        "the natural order of their names; a folder stands for the assets in it.", is_rare=True)
+    board: str | None = option(notations.BOARD, None, MEMORY, "A board, such as pynq-z1: its memory is the budget.")
+    profile: bool = option(FLAG, False, RUNNING,
+        "Print the time of each stage, with its parts indented below it.", is_rare=True)
+    reporting: ReportOptions = nested(ReportOptions)

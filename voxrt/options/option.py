@@ -1,0 +1,154 @@
+"""What an option is. A frozen dataclass whose fields are made here is a table of options.
+
+From such a table come the value and its checks (:func:`check_options`), its documentation (:func:`documented`), and on
+the command line the parser, the help, the completion and the manual's page, all by :func:`options_of`. This module
+imports no heavy library.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field, fields, replace
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from voxrt.options.kinds import Kind
+
+_T = TypeVar("_T")
+
+
+ARGUMENTS = "Arguments"
+"""The heading of what stands on the command line without the name of an option."""
+
+
+@dataclass(frozen=True)
+class Option:
+    """An option of the Python API, of a command, or of both.
+
+    Attributes
+    ----------
+    kind
+        The values that it takes.
+    default
+        Its default; :data:`dataclasses.MISSING` if it must be given.
+    group
+        Its heading in the help; None for an option of the Python API alone.
+    help
+        What it does, in a sentence or two. ``{name}`` stands for another option, however that is spelled.
+    details
+        What else there is to say: the short help of a command leaves it out.
+    flags
+        Its names on the command line; without them, the name of the field with dashes.
+    metavar
+        What its value is called; that of its kind if it is empty.
+    python
+        What is to be said of it in Python alone.
+    is_rare
+        Whether the short help of a command names it alone, without its text.
+    manifest
+        Whether the manifest of a build names it: always, or where it is not the default.
+    """
+
+    kind: Kind
+    default: Any
+    group: str | None
+    help: str
+    details: str = ""
+    flags: tuple[str, ...] = ()
+    metavar: str = ""
+    python: str = ""
+    is_rare: bool = False
+    manifest: Literal["never", "always", "changed"] = "never"
+
+    @property
+    def text(self) -> str:
+        """What it does, with the details."""
+        return f"{self.help} {self.details}".rstrip()
+
+    def field(self, **changed: Any) -> Any:  # noqa: ANN401 - type checkers take the annotation of the field
+        """Make the field of a dataclass, with some of the option's attributes changed."""
+        option = replace(self, **changed)
+        return field(default=option.default, metadata={"option": option})
+
+    def check(self, name: str, value: object) -> Any:  # noqa: ANN401
+        """Convert a value exactly; TypeError or ValueError, which call the option `name`, if that is not possible."""
+        return None if value is None and self.default is None else self.kind.check(name, value)
+
+
+def option(kind: Kind, default: Any, group: str | None, text: str, **more: Any) -> Any:  # noqa: ANN401
+    """Make the field of a dataclass that is an option: the attributes of :class:`Option`."""
+    return Option(kind, default, group, text, **more).field()
+
+
+def nested(table: Callable[[], object]) -> Any:  # noqa: ANN401
+    """Make the field of a dataclass that holds another table of options."""
+    return field(default_factory=table, metadata={"table": table})
+
+
+class OptionConflictError(ValueError):
+    """Options that do not go together; ``{name}`` in the text stands for one of them, however that is spelled."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(spell_options(text, str))
+        self.text = text
+
+
+def spell_options(text: str, spell: Callable[[str], str]) -> str:
+    """Return a text with each ``{name}`` spelled as an option of that name is."""
+    return re.sub(r"\{(\w+)\}", lambda name: spell(name[1]), text)
+
+
+def options_of(table: type) -> dict[str, Option]:
+    """Return the options of a table by name, those of nested tables in their place.
+
+    Examples
+    --------
+    >>> from voxrt import BuildOptions
+    >>> options_of(BuildOptions)["colours"].default
+    32
+    """
+    found: dict[str, Option] = {}
+    for one in fields(table):
+        found |= options_of(one.metadata["table"]) if "table" in one.metadata else {one.name: one.metadata["option"]}
+    return found
+
+
+def compose(table: type[_T], values: Mapping[str, object]) -> _T:
+    """Make a table with these values of its options, and of those of nested tables."""
+    found = {
+        one.name: compose(one.metadata["table"], values) if "table" in one.metadata else values[one.name]
+        for one in fields(table)  # type: ignore[arg-type]
+        if "table" in one.metadata or one.name in values
+    }
+    return table(**found)
+
+
+def check_options(table: Any) -> None:  # noqa: ANN401 - any table
+    """Convert the options of a table exactly, in place; TypeError or ValueError if that is not possible."""
+    for name, one in options_of(type(table)).items():
+        object.__setattr__(table, name, one.check(name, getattr(table, name)))
+
+
+def merge(function: str, table: type[_T], options: _T | None, keywords: Mapping[str, Any]) -> _T:
+    """Return a table of options with the keywords of a call in their place; `function` is what was called."""
+    from voxrt.voxelize.arguments import instance  # noqa: PLC0415 - NumPy comes with it, and --help must be instant
+
+    merged = instance("options", table() if options is None else options, table)
+    names = list(options_of(table))
+    if unknown := sorted(set(keywords) - set(names)):
+        raise TypeError(f"{function}() has no option {unknown[0]!r}; it has {', '.join(names)}")
+    return replace(merged, **keywords) if keywords else merged  # type: ignore[type-var]
+
+
+def documented(table: type[_T]) -> type[_T]:
+    """Put the options of a table into its docstring, behind the first paragraph."""
+    first, _, rest = (table.__doc__ or "").partition("\n\n")
+    lines = [f"    {name}\n        {_python_text(one)}\n" for name, one in options_of(table).items()]
+    table.__doc__ = f"{first}\n\n    Attributes\n    ----------\n{''.join(lines)}\n{rest}"
+    return table
+
+
+def _python_text(one: Option) -> str:
+    return " ".join(filter(None, (spell_options(one.text, "`{}`".format), one.python)))

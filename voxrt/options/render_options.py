@@ -1,0 +1,60 @@
+"""The options of a picture: what :func:`voxrt.render` takes besides the memory and the camera."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from voxrt.options.option import check_options, documented, option
+from voxrt.options.shared import ANYTHING, BACKGROUND, CONFIG, ENGINE, SAMPLES, SIZE, Engine
+
+if TYPE_CHECKING:
+    from voxrt.octree.camera import Lighting
+    from voxrt.sim import Background, Dram
+
+
+# A table: an option is its kind, its default and its group, then its text.
+# fmt: off
+@documented
+@dataclass(frozen=True, kw_only=True)
+class RenderOptions:
+    """How a picture is rendered.
+
+    Raises
+    ------
+    TypeError, ValueError
+        An option has a value of the wrong type, or one that is out of range.
+
+    Examples
+    --------
+    >>> from voxrt import RenderOptions
+    >>> RenderOptions(engine="model", background="light").background
+    (236, 240, 244)
+    """
+
+    size: tuple[int, int] = SIZE.field()
+    engine: Engine = ENGINE.field()
+    config: str = CONFIG.field(default="tiny")
+    lighting: Lighting | None = option(ANYTHING, None, None,
+        "Brightness of faces, light and mirrors. For light and mirrors the hardware needs a configuration that has "
+        "them. None takes the default brightness of faces.")
+    samples: int = SAMPLES.field()
+    background: Background | str | None = BACKGROUND.field()
+    threads: int = option(ANYTHING, 0, None, "Threads of the model; 0 takes one per core.")
+    dram: Dram | None = option(ANYTHING, None, None,
+        "The external memory of a configuration that has caches. None takes the default of voxrt.sim.Dram.")
+    root: int = option(ANYTHING, 0, None,
+        "The word of the memory that is the root of what is rendered; 0 but for the frames of an animation.")
+    lod: float = option(ANYTHING, 0.0, None,
+        "Level of detail: the width in pixels of the widest cell that rays stop at; True is 1. 0: they go down to "
+        "the leaves. The memory is built with lod=True.")
+
+    def __post_init__(self) -> None:
+        check_options(self)
+
+    def for_engines(self) -> dict[str, Any]:
+        """Return what both engines take, as keywords of :func:`voxrt.sim.check`; `engine` is for one of them alone."""
+        from voxrt.octree.camera import PLAIN_LIGHTING  # noqa: PLC0415 - NumPy comes with it
+
+        keywords = {name: value for name, value in vars(self).items() if name != "engine"}
+        return {**keywords, "lighting": self.lighting or PLAIN_LIGHTING}

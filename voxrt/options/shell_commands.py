@@ -1,0 +1,26 @@
+"""The command lines of what helps with command lines: completion and help."""
+
+from __future__ import annotations
+
+from dataclasses import MISSING, dataclass
+
+from voxrt.options.commands import COMMANDS
+from voxrt.options.kinds import Kind, as_it_is, one_of
+from voxrt.options.option import ARGUMENTS, option
+
+
+# A table: an option is its kind, its default and its group, then its text.
+# fmt: off
+@dataclass(frozen=True, kw_only=True)
+class CompletionCommand:
+    """What ``voxrt completion`` takes."""
+
+    shell: str = option(one_of(("bash", "zsh", "fish")), MISSING, ARGUMENTS, "The shell.")
+
+
+@dataclass(frozen=True, kw_only=True)
+class HelpCommand:
+    """What ``voxrt help`` takes."""
+
+    command: str | None = option(Kind("COMMAND", str, as_it_is, choices=tuple(COMMANDS)), None, ARGUMENTS,
+        "The command.")
