@@ -30,6 +30,7 @@ def lint(what: str, top: str, arguments: list[str | Path]) -> bool:
         "-Wall",
         "--top-module",
         top,
+        f"+incdir+{RTL}",
         RTL / "lint.vlt",
         *arguments,
     ]

@@ -76,10 +76,46 @@ package voxrt_pkg;
     return larger(max_depth + FractionBits + 1, DirectionBits) + 1;
   endfunction
 
-  // Memory words as the lanes read them: bit PayloadBits set = leaf of material [7:0], error in [8]; clear = block, and
-  // with Lod the mean material of what is below in the eight bits under that one.
+  typedef logic [7:0] material_t;
+
+  // Words of an octree, of 32 bits. The report dialect has {24'hFFFFFF, material} for a leaf, of which bit 31 decides,
+  // and for a pointer the address of the block's first word, 1 + 8 * block. The dialect lod has {24'hFFFFFF, material}
+  // and {block, mean material}.
+  function automatic logic is_leaf(logic [31:0] word, logic lod_words);
+    return lod_words ? word[31:8] == '1 : word[31];
+  endfunction
+
+  function automatic material_t material_of(logic [31:0] word);
+    return word[7:0];
+  endfunction
+
+  // The address of the block's first word.
+  function automatic logic [30:0] pointer_of(logic [31:0] word, logic lod_words);
+    return lod_words ? {4'd0, word[31:8], 3'd1} : word[30:0];
+  endfunction
+
+  function automatic logic [31:0] leaf_word(material_t material);
+    return {24'hFF_FFFF, material};
+  endfunction
+
+  function automatic logic [31:0] pointer_word(logic [23:0] block, material_t mean, logic lod_words);
+    return lod_words ? {block, mean} : {5'd0, block, 3'd1};
+  endfunction
+
+  // What a pointer reads as that was refused.
+  localparam logic [31:0] RefusedWord = 32'h7FFF_FFFF;
+
+  // Words as the lanes read them have a bit more than payload_bits. The highest bit tells a leaf, whose low bits are a
+  // leaf_t. Of a pointer the low bits are the block, and with Lod the eight below the highest bit the mean material.
+  typedef struct packed {
+    logic      error;     // The pointer was refused, or the word did not come.
+    material_t material;  // 0 with an error.
+  } leaf_t;
+
+  localparam leaf_t ErrorLeaf = '{error: 1'b1, material: '0};
+
   function automatic int payload_bits(int block_bits, bit lod);
-    return larger(block_bits, 9) + (lod ? 8 : 0);
+    return larger(block_bits, $bits(leaf_t)) + (lod ? $bits(material_t) : 0);
   endfunction
 
   // Forms of the octree memory: the parameter MemoryForm.
@@ -119,8 +155,6 @@ package voxrt_pkg;
   localparam int unsigned ShadowPointLimit = DepthLimit + ShadowFractionBits + 2;
   localparam int unsigned RowLimit = 6;  // Bits of the number of a row of weights.
   localparam int unsigned ReachLimit = DistanceLimit - FractionBits;
-
-  typedef logic [7:0] material_t;
 
   // The axis of a plane; FaceNone where none was crossed. The order of the codes is the order of planes that are
   // crossed at the same time.

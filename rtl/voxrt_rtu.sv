@@ -200,6 +200,9 @@ module voxrt_rtu
 
   // With Light or Mirrors the lanes go into a root that is a leaf: its faces are lit and reflect too.
   localparam bit ResolvesRoot = !Light && !Mirrors;
+  leaf_t root_leaf;
+
+  assign root_leaf = root[$bits(leaf_t)-1:0];
 
   voxrt_rays #(
     .Lanes       (Lanes),
@@ -215,7 +218,7 @@ module voxrt_rtu
     .raster_i       (raster),
     .world_i        (world),
     .root_leaf_i    (ResolvesRoot && root[PayloadBits]),
-    .root_material_i(!ResolvesRoot || root[8] ? '0 : root[7:0]),
+    .root_material_i(!ResolvesRoot || root_leaf.error ? '0 : root_leaf.material),
     .lod_scale_i    (frame.lod_scale),
     .credit_i       (credit),
     .issue_o        (issue),
@@ -403,7 +406,7 @@ module voxrt_rtu
     .hit_i               (pixel_o.pixel.material != '0),
     .word_read_i         (word_valid),
     .direction_overflow_i(ray_valid && overflow),
-    .bad_pointer_i       (bad_pointer != '0 || (root_valid && root[PayloadBits] && root[8])),
+    .bad_pointer_i       (bad_pointer != '0 || (root_valid && root[PayloadBits] && root_leaf.error)),
     .step_limit_i        (step_limit != '0),
     .memory_events_i     (memory_events),
     .error_o,

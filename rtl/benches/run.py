@@ -185,6 +185,7 @@ def run(name: str) -> None:
     runner = get_runner("verilator")
     runner.build(
         sources=[*sources, *build.coverage, *build.wrapper],
+        includes=[RTL],
         hdl_toplevel=build.top,
         parameters=build.parameters,
         defines={"VOXRT_NARROW_MULTIPLIERS": 1} if build.narrow else {},

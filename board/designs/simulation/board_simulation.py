@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..build import list_sources, parameters, top_of
+from ..build import RTL, list_sources, parameters, top_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -124,7 +124,7 @@ def compile_verilog(
     ]
     command += ["-Wno-fatal", "-Wno-lint", "-O3", "--x-assign", "fast", "--x-initial", "fast", "--noassert"]
     command += ["--output-split", "20000", "--output-split-cfuncs", "500"]
-    command += [*settings, _HERE / "simulation.cpp", *sources]
+    command += [f"+incdir+{RTL}", *settings, _HERE / "simulation.cpp", *sources]
     _run([str(part) for part in command], environment)
     # The package's makefile leaves the option for precompiled headers empty.
     flags = ["CFG_CXXFLAGS_PCH_I=-include", f"OPT_FAST={opt}", "OPT_SLOW=-O0", "OPT_GLOBAL=-O1"]

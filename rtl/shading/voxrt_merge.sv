@@ -1,4 +1,6 @@
 // Pixels of all lanes in pixel order: lane i has the pixels i mod Lanes.
+`include "voxrt_assert.svh"
+
 module voxrt_merge #(
   parameter int unsigned Lanes = 1,
   parameter int unsigned Width = 8  // Bits: 1 or more.
@@ -36,13 +38,5 @@ module voxrt_merge #(
     if (!rst_ni || start_i) next_lane_q <= Lanes'(1);
   end
 
-`ifndef SYNTHESIS
-  // Before the first reset, nothing holds.
-  logic reset_seen_q = 1'b0;
-  always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
-
-  always_ff @(posedge clk_i) begin
-    if (rst_ni && reset_seen_q) assert ($onehot(next_lane_q)) else $error("next_lane_q is not one-hot");
-  end
-`endif
+  `VOXRT_ASSERT(NextLaneIsOneHot, $onehot(next_lane_q))
 endmodule

@@ -94,6 +94,6 @@ module voxrt_line_reader
       .word_o(encoded)
     );
 
-    assign answer_words_o[w] = failed[answer_port_q] ? {1'b1, PayloadBits'(9'h100)} : encoded;
+    assign answer_words_o[w] = failed[answer_port_q] ? {1'b1, PayloadBits'(ErrorLeaf)} : encoded;
   end
 endmodule

@@ -7,6 +7,8 @@
 //
 // With StoresEarlier a pixel may be stored before its entry is completed, which then tells whether it is lit: two
 // memories. Without, both happen at once, and one is enough.
+`include "voxrt_assert.svh"
+
 module voxrt_pixel_buffer #(
   parameter int unsigned Width         = 10,   // Bits: 1 or more.
   parameter int unsigned Depth         = 256,  // Entries: a power of two, 4 or more.
@@ -160,19 +162,6 @@ module voxrt_pixel_buffer #(
     );
   end
 
-`ifndef SYNTHESIS
-  // Before the first reset, nothing holds.
-  logic reset_seen_q = 1'b0;
-  always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
-
-  always_ff @(posedge clk_i) begin
-    if (rst_ni && reset_seen_q) begin
-      assert (!allocate_i || ready_o) else $error("an entry is allocated that is not free");
-      assert (!complete || fifo_ready) else $error("the FIFO of pixels overflows");
-    end
-  end
-`else
-  logic unused_ready;
-  assign unused_ready = fifo_ready;
-`endif
+  `VOXRT_ASSERT(AllocatedEntryWasFree, !allocate_i || ready_o)
+  `VOXRT_ASSERT(FifoHoldsPixel, !complete || fifo_ready)
 endmodule

@@ -7,6 +7,8 @@
 //
 // Who waits is in memories: a lane waits for an entry when its bits in joined_q and answered_q differ. The first is
 // written by misses, the second when the entry ends. Both are cleared after a reset; until then nothing is accepted.
+`include "voxrt_assert.svh"
+
 module voxrt_miss_list #(
   parameter int unsigned Pipes     = 2,   // 1 or 2.
   parameter int unsigned PipeLanes = 8,   // Lanes per pipe: 1 or more.
@@ -172,17 +174,9 @@ module voxrt_miss_list #(
   assign fetch_line_o              = fetched_q[fetch_q];
   assign {come_way_o, come_line_o} = coming_q[come_q];
 
-`ifndef SYNTHESIS
-  // Before the first reset, nothing holds.
-  logic reset_seen_q = 1'b0;
-  always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
-
-  always_ff @(posedge clk_i) begin
-    if (rst_ni && reset_seen_q) begin
-      for (int unsigned p = 0; p < Pipes; p++) assert ($onehot0(same_q[p]) || !miss_i[p]) else $error("a line has two entries");
-      assert (!come_i || valid_q[come_q]) else $error("a line comes that nobody waits for");
-      assert (!free_i || valid_q[free_q]) else $error("no entry ends");
-    end
+  for (genvar p = 0; p < Pipes; p++) begin : gen_check
+    `VOXRT_ASSERT(LineHasOneEntry, $onehot0(same_q[p]) || !miss_i[p])
   end
-`endif
+  `VOXRT_ASSERT(LineIsWaitedFor, !come_i || valid_q[come_q])
+  `VOXRT_ASSERT(EntryEnds, !free_i || valid_q[free_q])
 endmodule

@@ -1,5 +1,7 @@
 // Issues the rays of a frame to the lanes, one per RayClocks clocks. Rays of the camera go to the lanes in turn, each when
 // its lane has a credit; shadow rays (Light) go first, at any clock: their places in the queue are reserved already.
+`include "voxrt_assert.svh"
+
 module voxrt_rays
   import voxrt_pkg::*;
 #(
@@ -122,23 +124,13 @@ module voxrt_rays
   );
 
 `ifndef SYNTHESIS
-  // Before the first reset, nothing holds.
-  logic             reset_seen_q = 1'b0;
   logic [Lanes-1:0] credit_q, credit;
 
   assign credit = many_lanes(Lanes) ? credit_q : credit_i;  // As a ray's issue sees it.
 
-  always_ff @(posedge clk_i) begin
-    reset_seen_q <= reset_seen_q || !rst_ni;
-    credit_q     <= rst_ni ? credit_i : '0;
-  end
-
-  always_ff @(posedge clk_i) begin
-    if (rst_ni && reset_seen_q) begin
-      assert ($onehot(next_lane_q)) else $error("next_lane_q is not one-hot");
-      assert ((issue_o & ~credit) == '0) else $error("a ray for a lane without credit");
-      assert (!valid_o || $onehot(lane_o)) else $error("a ray for no lane or many");
-    end
-  end
+  always_ff @(posedge clk_i) credit_q <= rst_ni ? credit_i : '0;
 `endif
+  `VOXRT_ASSERT(NextLaneIsOneHot, $onehot(next_lane_q))
+  `VOXRT_ASSERT(IssuedRayHasCredit, (issue_o & ~credit) == '0)
+  `VOXRT_ASSERT(RayIsForOneLane, !valid_o || $onehot(lane_o))
 endmodule

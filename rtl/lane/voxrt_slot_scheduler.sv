@@ -13,6 +13,8 @@
 // A ray that voxrt_hit_point has no place for, or that finds voxrt_light without a credit, waits: it goes round without
 // reading words, and hits again. It needs no credit where a shadow ray waits for its slot, which gives one back: so
 // neither waits for the other for ever.
+`include "voxrt_assert.svh"
+
 module voxrt_slot_scheduler
   import voxrt_pkg::*;
 #(
@@ -256,18 +258,8 @@ module voxrt_slot_scheduler
     assign hit_o        = '0;
   end
 
-`ifndef SYNTHESIS
-  // Before the first reset, nothing holds.
-  logic reset_seen_q = 1'b0;
-  always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
-
-  always_ff @(posedge clk_i) begin
-    if (rst_ni && reset_seen_q) begin
-      assert (!(step_i.done && step_i.continues)) else $error("a ray is done and continues");
-      assert (!(issues && bypasses)) else $error("a ray is issued and bypasses");
-      assert (!(issues && keeps)) else $error("a slot has two rays");
-      assert (!allocate_o || allocate_ready_i) else $error("an entry is allocated that is not free");
-    end
-  end
-`endif
+  `VOXRT_ASSERT(RayIsDoneOrContinues, !(step_i.done && step_i.continues))
+  `VOXRT_ASSERT(RayIsIssuedOrBypasses, !(issues && bypasses))
+  `VOXRT_ASSERT(SlotHasOneRay, !(issues && keeps))
+  `VOXRT_ASSERT(AllocatedEntryWasFree, !allocate_o || allocate_ready_i)
 endmodule

@@ -11,10 +11,15 @@ module voxrt_word_decoder
 );
   localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
 
+  leaf_t     leaf;
+  material_t mean;
+
+  assign leaf = word_i[$bits(leaf_t)-1:0];
+  assign mean = word_i[PayloadBits-1-:$bits(material_t)];
+
   always_comb begin
-    if (Lod && lod_words_i && !word_i[PayloadBits]) word_o = {24'(word_i[BlockBits-1:0]), word_i[PayloadBits-1-:8]};
-    else if (!word_i[PayloadBits]) word_o = 32'({word_i[BlockBits-1:0], 3'd1});
-    else if (word_i[8]) word_o = 32'h7FFF_FFFF;
-    else word_o = {24'hFF_FFFF, word_i[7:0]};
+    if (!word_i[PayloadBits]) word_o = pointer_word(24'(word_i[BlockBits-1:0]), mean, Lod && lod_words_i);
+    else if (leaf.error) word_o = RefusedWord;
+    else word_o = leaf_word(leaf.material);
   end
 endmodule

@@ -2,6 +2,8 @@
 //
 // Nobody allocates more rows than there are: the list of freed rows is as long as the memory, and is not read before
 // each row has been allocated once.
+`include "voxrt_assert.svh"
+
 module voxrt_free_list #(
   parameter int unsigned RowBits = 5  // 2**RowBits rows: 1 or more.
 ) (
@@ -37,20 +39,14 @@ module voxrt_free_list #(
   end
 
 `ifndef SYNTHESIS
-  // Before the first reset, nothing holds.
-  logic reset_seen_q = 1'b0;
-  always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
-
   logic [2**RowBits-1:0] allocated_q;
 
   always_ff @(posedge clk_i) begin
     if (allocate_i) allocated_q[row_o] <= 1'b1;
     if (free_i) allocated_q[row_i] <= 1'b0;
     if (!rst_ni) allocated_q <= '0;
-    if (rst_ni && reset_seen_q) begin
-      assert (!allocate_i || !allocated_q[row_o]) else $error("a row is allocated twice");
-      assert (!free_i || allocated_q[row_i]) else $error("a row is freed that is free");
-    end
   end
 `endif
+  `VOXRT_ASSERT(AllocatedRowWasFree, !allocate_i || !allocated_q[row_o])
+  `VOXRT_ASSERT(FreedRowWasAllocated, !free_i || allocated_q[row_i])
 endmodule

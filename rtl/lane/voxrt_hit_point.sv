@@ -13,6 +13,8 @@
 // Two places. The first is given to a ray at stage 3, when its weights are read; it gets since at stage 6. At stage 9
 // voxrt_slot_scheduler says whether the ray is taken: there it is known whether the light may reach its face. The second
 // place divides. A ray that hits while the first place is not free goes round once more.
+`include "voxrt_assert.svh"
+
 module voxrt_hit_point
   import voxrt_pkg::*;
 #(
@@ -153,21 +155,10 @@ module voxrt_hit_point
     for (int unsigned a = 0; a < 3; a++) hit_point_o.point[a] = result_q.point[a] | PointLimit'(lower_q[a]);
   end
 
-`ifndef SYNTHESIS
-  // Before the first reset, nothing holds.
-  logic reset_seen_q = 1'b0;
-  always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
-
-  always_ff @(posedge clk_i) begin
-    if (rst_ni && reset_seen_q) begin
-      assert (!takes9_i || holds9_o) else $error("a ray is taken that has no place");
-      assert (!takes9_i || !taken_q) else $error("a place has two rays");
-      for (int unsigned a = 0; a < 3; a++) begin
-        assert (move == Stay || since[a][SinceBits-1:Bits] < weights_q[a]) else $error("a ray is not in its leaf");
-        assert (!valid_o || (result_q.point[a] & PointLimit'(lower_q[a])) == '0)
-        else $error("a hit point is not in its leaf");
-      end
-    end
+  `VOXRT_ASSERT(TakenRayHasPlace, !takes9_i || holds9_o)
+  `VOXRT_ASSERT(PlaceHasOneRay, !takes9_i || !taken_q)
+  for (genvar a = 0; a < 3; a++) begin : gen_check
+    `VOXRT_ASSERT(RayIsInItsLeaf, move == Stay || since[a][SinceBits-1:Bits] < weights_q[a])
+    `VOXRT_ASSERT(PointIsInItsLeaf, !valid_o || (result_q.point[a] & PointLimit'(lower_q[a])) == '0)
   end
-`endif
 endmodule

@@ -1,5 +1,7 @@
 // Lines on their way into the caches of a few lanes (voxrt_l1_cache): whole lines come in at any clock, two words per
 // clock go out, in order. A line may go to several of the lanes at once.
+`include "voxrt_assert.svh"
+
 module voxrt_line_queue #(
   parameter int unsigned Lanes    = 2,   // That share the queue: 1 or more.
   parameter int unsigned SetBits  = 5,   // Of their caches: 1 or more.
@@ -57,13 +59,5 @@ module voxrt_line_queue #(
   assign quarter_o = quarter_q;
   assign pair_o    = {words[{quarter_q, 1'b1}], words[{quarter_q, 1'b0}]};
 
-`ifndef SYNTHESIS
-  // Before the first reset, nothing holds.
-  logic reset_seen_q = 1'b0;
-  always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
-
-  always_ff @(posedge clk_i) begin
-    if (rst_ni && reset_seen_q) assert (valid_i == '0 || ready) else $error("more lines come than fit");
-  end
-`endif
+  `VOXRT_ASSERT(QueueHoldsLine, valid_i == '0 || ready)
 endmodule

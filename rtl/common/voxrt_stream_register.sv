@@ -1,5 +1,7 @@
 // A register in a stream: valid_o and data_o come from flip-flops. One transfer per clock. ready_o depends on ready_i in
 // the same clock; with CutsReady it comes from a flip-flop too, and a second register holds what comes meanwhile.
+`include "voxrt_assert.svh"
+
 module voxrt_stream_register #(
   parameter int unsigned Width     = 8,    // Bits: 1 or more.
   parameter bit          CutsReady = 1'b0
@@ -55,14 +57,5 @@ module voxrt_stream_register #(
     end
   end
 
-`ifndef SYNTHESIS
-  logic             stalled_q = 1'b0;
-  logic [Width-1:0] offer_q;
-
-  always_ff @(posedge clk_i) begin
-    stalled_q <= rst_ni && valid_o && !ready_i;
-    offer_q   <= data_o;
-    if (rst_ni && stalled_q) assert (valid_o && data_o == offer_q) else $error("an offer changed before it was taken");
-  end
-`endif
+  `VOXRT_ASSERT_STABLE(OfferStays, valid_o, ready_i, data_o)
 endmodule

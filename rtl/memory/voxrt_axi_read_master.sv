@@ -3,6 +3,8 @@
 // Each request is answered once, in order. After an error of the bus (SLVERR, DECERR), or 2**TimeoutBits clocks without
 // an answer, all requests are answered as failed at once, without the bus, until recover_i. What the bus still owes is
 // counted, and dropped when it comes: so the rules of AXI hold through failures and soft resets.
+`include "voxrt_assert.svh"
+
 module voxrt_axi_read_master
   import voxrt_pkg::*;
 #(
@@ -114,17 +116,6 @@ module voxrt_axi_read_master
     end
   end
 
-`ifndef SYNTHESIS
-  // Before the first reset, nothing holds.
-  logic reset_seen_q = 1'b0;
-  always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
-
-  always_ff @(posedge clk_i) begin
-    if (rst_ni && reset_seen_q) begin
-      assert (dropped_q <= bursts_q) else $error("more bursts are to be dropped than there are");
-      assert (failed_q || owed_q == bursts_q - dropped_q + CountBits'(line_valid_q))
-      else $error("requests and bursts differ");
-    end
-  end
-`endif
+  `VOXRT_ASSERT(DroppedWereBursts, dropped_q <= bursts_q)
+  `VOXRT_ASSERT(OwedAsManyAsBursts, failed_q || owed_q == bursts_q - dropped_q + CountBits'(line_valid_q))
 endmodule

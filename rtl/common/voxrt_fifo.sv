@@ -1,4 +1,6 @@
 // First in, first out, of any depth that is a power of two. Data in distributed memory, read combinationally.
+`include "voxrt_assert.svh"
+
 module voxrt_fifo #(
   parameter int unsigned Width = 8,  // Bits: 1 or more.
   parameter int unsigned Depth = 16  // Words: a power of two, 2 or more.
@@ -40,16 +42,5 @@ module voxrt_fifo #(
     end
   end
 
-`ifndef SYNTHESIS
-  // Before the first reset, nothing holds.
-  logic reset_seen_q = 1'b0;
-  always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
-
-  logic [IndexBits:0] count;
-  assign count = write_q - read_q;
-
-  always_ff @(posedge clk_i) begin
-    if (rst_ni && reset_seen_q) assert (count <= (IndexBits + 1)'(Depth)) else $error("more words than the FIFO holds");
-  end
-`endif
+  `VOXRT_ASSERT(CountWithinDepth, (IndexBits + 1)'(write_q - read_q) <= (IndexBits + 1)'(Depth))
 endmodule

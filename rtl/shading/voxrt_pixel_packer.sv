@@ -8,6 +8,8 @@
 //
 // Each line starts a new word: where the width is no multiple of 4, the line's last word has null bytes, which tkeep
 // marks and which are zero. tuser marks the first word of a frame, tlast the last of a line.
+`include "voxrt_assert.svh"
+
 module voxrt_pixel_packer
   import voxrt_pkg::*;
 (
@@ -96,17 +98,6 @@ module voxrt_pixel_packer
   assign m_axis_tuser  = user_q;
   assign m_axis_tlast  = last_q;
 
-`ifndef SYNTHESIS
-  logic        stalled_q = 1'b0;
-  logic [37:0] offer_q;
-
-  always_ff @(posedge clk_i) begin
-    stalled_q <= rst_ni && m_axis_tvalid && !m_axis_tready;
-    offer_q   <= {m_axis_tdata, m_axis_tkeep, m_axis_tuser, m_axis_tlast};
-    if (rst_ni && stalled_q) begin
-      assert (m_axis_tvalid && offer_q == {m_axis_tdata, m_axis_tkeep, m_axis_tuser, m_axis_tlast})
-      else $error("an offered word changed before it was taken");
-    end
-  end
-`endif
+  `VOXRT_ASSERT_STABLE(OfferStays, m_axis_tvalid, m_axis_tready,
+                       {m_axis_tdata, m_axis_tkeep, m_axis_tuser, m_axis_tlast})
 endmodule

@@ -142,6 +142,7 @@ module voxrt_lane
   // 2 decode.
   logic                 leaf, bad_pointer, step_limit, arrived;
   logic [PayloadBits:0] word;
+  leaf_t                content;  // Of a leaf.
   action_e              action;
   logic [MaxDepth-1:0]  size2;
 
@@ -149,7 +150,8 @@ module voxrt_lane
   assign word        = root_is_leaf ? root_i : mem_word_i;
   assign arrived     = (mem_ack_i || root_is_leaf) && !modes.waits2;
   assign leaf        = word[PayloadBits];
-  assign bad_pointer = leaf && word[8];
+  assign content     = word[$bits(leaf_t)-1:0];
+  assign bad_pointer = leaf && content.error;
   assign step_limit  = !leaf && size2[0];
 
   always_comb begin
@@ -157,7 +159,7 @@ module voxrt_lane
     if (modes.waits2) action = Finish;
     else if (!arrived) action = Retry;
     else if (!leaf && !size2[0]) action = Descend;
-    else if (leaf && word[8:0] == '0) action = Leave;
+    else if (leaf && content == '0) action = Leave;
   end
 
   // With Lod, a ray may stop at a pointer.
@@ -179,7 +181,7 @@ module voxrt_lane
   always_ff @(posedge clk_i) begin
     action3_q      <= action;
     block3_q       <= word[BlockBits-1:0];
-    material3_q    <= modes.waits2 ? modes.material2 : leaf && !bad_pointer ? word[7:0] : '0;
+    material3_q    <= modes.waits2 ? modes.material2 : leaf && !bad_pointer ? content.material : '0;
     child_level3_q <= level_of(size2 >> 1);
     bad_pointer_q  <= active_q[2+Extra] && arrived && bad_pointer;
     step_limit_q   <= active_q[2+Extra] && arrived && step_limit;
@@ -239,7 +241,7 @@ module voxrt_lane
     ) u_lod (
       .clk_i,
       .pointer_i(active_q[2+Extra] && action == Descend),
-      .mean_i   (word[PayloadBits-1-:8]),
+      .mean_i   (word[PayloadBits-1-:$bits(material_t)]),
       .near_i   (near2),
       .level_i  (level_of(size2)),
       .reach_i  (reach3),

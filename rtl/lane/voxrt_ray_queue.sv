@@ -1,5 +1,7 @@
 // Two queues in one memory, whose depth distributed memory has anyway: rays of the camera, and shadow rays, which
 // leave first. A ray comes only when its queue has a place: both queues' writers hold credits, so none is refused.
+`include "voxrt_assert.svh"
+
 module voxrt_ray_queue #(
   parameter int unsigned Width = 8,  // Bits: 1 or more.
   parameter int unsigned Depth = 16  // Rays of each queue: a power of two, 2 or more.
@@ -45,17 +47,7 @@ module voxrt_ray_queue #(
     end
   end
 
-`ifndef SYNTHESIS
-  // Before the first reset, nothing holds.
-  logic reset_seen_q = 1'b0;
-  always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
-
   for (genvar i = 0; i < 2; i++) begin : gen_check
-    logic [IndexBits:0] count;
-    assign count = write_q[i] - read_q[i];
-    always_ff @(posedge clk_i) begin
-      if (rst_ni && reset_seen_q) assert (count <= (IndexBits + 1)'(Depth)) else $error("a queue of rays overflows");
-    end
+    `VOXRT_ASSERT(CountWithinDepth, (IndexBits + 1)'(write_q[i] - read_q[i]) <= (IndexBits + 1)'(Depth))
   end
-`endif
 endmodule

@@ -4,6 +4,8 @@
 // points. A lane has at most QueueDepth shadow rays under way, from its claim until it issues the ray (issued_i): it may
 // claim while hit_point_ready_o is high, and at a clock in which it issues a shadow ray. Some clocks later it gives the
 // hit point.
+`include "voxrt_assert.svh"
+
 module voxrt_light
   import voxrt_pkg::*;
 #(
@@ -86,22 +88,9 @@ module voxrt_light
       .data_o (queued[i])
     );
 
-`ifndef SYNTHESIS
-    // Before the first reset, nothing holds.
-    logic reset_seen_q = 1'b0;
-    always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
-
-    always_ff @(posedge clk_i) begin
-      if (rst_ni && reset_seen_q) begin
-        assert (!hit_point_claim_i[i] || hit_point_ready_o[i] || issued_i[i]) else $error("a claim without credit");
-        assert (!hit_point_valid_i[i] || ready) else $error("the queue of hit points overflows");
-        assert (credits_q <= CountBits'(QueueDepth)) else $error("more credits than places");
-      end
-    end
-`else
-    logic unused_ready;
-    assign unused_ready = ready;
-`endif
+    `VOXRT_ASSERT(ClaimHasCredit, !hit_point_claim_i[i] || hit_point_ready_o[i] || issued_i[i])
+    `VOXRT_ASSERT(QueueHoldsHitPoint, !hit_point_valid_i[i] || ready)
+    `VOXRT_ASSERT(CreditsWithinPlaces, credits_q <= CountBits'(QueueDepth))
   end
 
   always_comb begin

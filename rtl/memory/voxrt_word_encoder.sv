@@ -12,35 +12,22 @@ module voxrt_word_encoder
 );
   localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
 
-  logic        leaf;
-  logic [30:0] pointer;  // Of the report dialect.
-  logic [ 7:0] mean;
+  logic        lod_words;
+  logic [30:0] pointer;
 
-  if (Lod) begin : gen_lod
-    // {block, mean material} or FFFFFFmm.
-    assign leaf    = lod_words_i ? word_i[31:8] == '1 : word_i[31];
-    assign pointer = lod_words_i ? {4'd0, word_i[31:8], 3'd1} : word_i[30:0];
-    assign mean    = lod_words_i ? word_i[7:0] : '0;
-  end else begin : gen_report
-    logic unused_lod;
-    assign unused_lod = lod_words_i;
-    assign leaf       = word_i[31];
-    assign pointer    = word_i[30:0];
-    assign mean       = '0;
-  end
+  assign lod_words = Lod && lod_words_i;
+  assign pointer   = pointer_of(word_i, lod_words);
 
   always_comb begin
     word_o = '0;
-    if (leaf) begin
-      word_o[PayloadBits] = 1'b1;
-      word_o[7:0]         = word_i[7:0];
+    if (is_leaf(word_i, lod_words)) begin
+      word_o = {1'b1, PayloadBits'(material_of(word_i))};
     end else if (pointer[2:0] != 3'd1 || pointer[30:BlockBits+3] != '0) begin
       // Into the middle of a block, or out of the memory.
-      word_o[PayloadBits] = 1'b1;
-      word_o[8]           = 1'b1;
+      word_o = {1'b1, PayloadBits'(ErrorLeaf)};
     end else begin
       word_o[BlockBits-1:0] = pointer[BlockBits+2:3];
-      if (Lod) word_o[PayloadBits-1-:8] = mean;
+      if (lod_words) word_o[PayloadBits-1-:$bits(material_t)] = material_of(word_i);
     end
   end
 endmodule

@@ -11,6 +11,8 @@
 //
 // Pipeline: direction, material | sizes | squares: two clocks | sums | colour x square: two clocks | dividend |
 // 8 bits of the quotient | FIFO.
+`include "voxrt_assert.svh"
+
 module voxrt_shader
   import voxrt_pkg::*;
 #(
@@ -282,20 +284,7 @@ module voxrt_shader
 
   assign leaves = pixel_valid_o && pixel_ready_i;
 
-`ifndef SYNTHESIS
-  // Before the first reset, nothing holds.
-  logic reset_seen_q = 1'b0;
-  always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
-
-  always_ff @(posedge clk_i) begin
-    if (rst_ni && reset_seen_q) begin
-      assert (!moves[Stages] || fifo_ready) else $error("the FIFO of pixels overflows");
-      assert (credits_q <= CountBits'(FifoDepth)) else $error("more credits than places");
-      assert (!enters || direction_valid) else $error("a pixel without a direction");
-    end
-  end
-`else
-  logic unused_ready;
-  assign unused_ready = fifo_ready;
-`endif
+  `VOXRT_ASSERT(FifoHoldsPixel, !moves[Stages] || fifo_ready)
+  `VOXRT_ASSERT(CreditsWithinPlaces, credits_q <= CountBits'(FifoDepth))
+  `VOXRT_ASSERT(PixelHasDirection, !enters || direction_valid)
 endmodule

@@ -2,6 +2,8 @@
 //
 // Credits: issue_i, only where credit_o was high, reserves a place in the queue for a ray of the camera, which comes some
 // clocks later. Shadow rays have a queue of their own, whose places voxrt_light counts.
+`include "voxrt_assert.svh"
+
 module voxrt_buffered_lane
   import voxrt_pkg::*;
 #(
@@ -288,23 +290,9 @@ module voxrt_buffered_lane
     .pixel_o
   );
 
-`ifndef SYNTHESIS
-  // Before the first reset, nothing holds.
-  logic reset_seen_q = 1'b0;
-  always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
-
-  always_ff @(posedge clk_i) begin
-    if (rst_ni && reset_seen_q) begin
-      assert (!issue_i || credits_q != '0) else $error("a ray is issued without a credit");
-      assert (credits_q <= CountBits'(Credits)) else $error("more credits than places");
-    end
-  end
+  `VOXRT_ASSERT(IssuedRayHasCredit, !issue_i || credits_q != '0)
+  `VOXRT_ASSERT(CreditsWithinPlaces, credits_q <= CountBits'(Credits))
   if (!Light) begin : gen_check_queue
-    always_ff @(posedge clk_i) begin
-      if (rst_ni && reset_seen_q) begin
-        assert (!ray_valid_i || gen_queue.u_rays.ready_o) else $error("the queue of rays overflows");
-      end
-    end
+    `VOXRT_ASSERT(QueueHoldsRay, !ray_valid_i || gen_queue.u_rays.ready_o)
   end
-`endif
 endmodule

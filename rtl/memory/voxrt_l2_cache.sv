@@ -11,6 +11,8 @@
 // A line replaces one of its set: an empty way, or one that was not used lately, by a tree of three bits. Of two lookups at
 // a clock, one counts as use. The bits are read a clock before a lookup is known to miss, and written a clock after it:
 // paths are short, and lookups of a set that follow each other so closely are seldom.
+`include "voxrt_assert.svh"
+
 module voxrt_l2_cache
   import voxrt_pkg::*;
 #(
@@ -307,19 +309,9 @@ module voxrt_l2_cache
     end
   end
 
-`ifndef SYNTHESIS
-  // Before the first reset, nothing holds.
-  logic reset_seen_q = 1'b0;
-  always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
-
-  always_ff @(posedge clk_i) begin
-    if (rst_ni && reset_seen_q) begin
-      for (int unsigned p = 0; p < Pipes; p++) begin
-        assert ($onehot0(same[p]) || !hit[p]) else $error("a line is in two ways");
-        assert (!fill_q[3] || lanes_q[p][3] == '0) else $error("a lookup beside a fill");
-      end
-      assert (!flush_i || idle_o) else $error("lines are dropped while others come");
-    end
+  for (genvar p = 0; p < Pipes; p++) begin : gen_check
+    `VOXRT_ASSERT(LineInOneWay, $onehot0(same[p]) || !hit[p])
+    `VOXRT_ASSERT(NoLookupBesideFill, !fill_q[3] || lanes_q[p][3] == '0)
   end
-`endif
+  `VOXRT_ASSERT(FlushedWhenIdle, !flush_i || idle_o)
 endmodule

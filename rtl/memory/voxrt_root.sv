@@ -54,7 +54,7 @@ module voxrt_root
       address_q <= offset[AddressBits:0];
       read_q    <= !beyond;
       valid_q   <= beyond;
-      root_q    <= address_i == '0 ? first_word_i : {1'b1, PayloadBits'(9'h100)};
+      root_q    <= address_i == '0 ? first_word_i : {1'b1, PayloadBits'(ErrorLeaf)};
     end
     if (!rst_ni) begin
       read_q    <= 1'b0;
