@@ -125,7 +125,7 @@ module voxrt_core
     $error("voxrt_core: Lod does not go with Light or Mirrors");
   end
 
-  voxrt_registers_pkg::voxrt_registers__in_t  status;
+  voxrt_registers_pkg::voxrt_registers__in_t status;
   voxrt_registers_pkg::voxrt_registers__out_t control;
 
   voxrt_registers u_registers (
@@ -159,7 +159,7 @@ module voxrt_core
   assign rst_n = rst_ni && !control.control.soft_reset.value;
 
   // Frames. The ray tracer's errors are of a frame, and rise in it at any time; the registers' stick until cleared.
-  logic   busy, busy_q, start;
+  logic busy, busy_q, start;
   error_t error;
 
   assign start = (control.control.start.value || control.control.continuous.value) && !control.control.hold.value;
@@ -200,11 +200,11 @@ module voxrt_core
   assign material_write.material = control.materials.addr[9:2];
   assign material_write.entry    = control.materials.wr_data[24:0];
 
-  logic          pixel_valid, pixel_ready, unused_access_valid;
+  logic pixel_valid, pixel_ready, unused_access_valid;
   shaded_pixel_t pixel;
-  counters_t     counters;
+  counters_t counters;
 
-  axi_read_request_t  axi_request [BusPorts];
+  axi_read_request_t axi_request[BusPorts];
   axi_read_response_t axi_response[BusPorts];
 
   assign m_axi0_arvalid  = axi_request[0].arvalid;

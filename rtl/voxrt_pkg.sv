@@ -61,8 +61,8 @@ package voxrt_pkg;
 
   // The same where each reflection moves the origin by less than the world's side.
   function automatic int reflected_distance_bits(int max_depth, int position_bits);
-    return $clog2(64'd2 ** (position_bits - 1) +
-                  (64'd2 ** BounceBits + 1) * 64'd2 ** (max_depth + FractionBits) + 1) + 1;
+    return $clog2(64'd2 ** (position_bits - 1) + (64'd2 ** BounceBits + 1) * 64'd2 ** (max_depth + FractionBits) + 1) +
+        1;
   endfunction
 
   // T as lanes compare it: modulo more than twice the time between any two planes of the world that a ray crosses in
@@ -120,8 +120,8 @@ package voxrt_pkg;
 
   // Forms of the octree memory: the parameter MemoryForm.
   localparam int unsigned PrivateForm = 0;  // A copy per two lanes.
-  localparam int unsigned BankedForm = 1;   // One memory in banks.
-  localparam int unsigned CachedForm = 2;   // An external memory behind caches.
+  localparam int unsigned BankedForm = 1;  // One memory in banks.
+  localparam int unsigned CachedForm = 2;  // An external memory behind caches.
 
   // From an address of the octree memory to its word.
   function automatic int memory_clocks(int form);
@@ -213,11 +213,11 @@ package voxrt_pkg;
     logic [SizeBits-1:0]        width;
     logic [SizeBits-1:0]        height;
     logic [4:0]                 depth;
-    logic [31:0]                root;      // Word address.
+    logic [31:0]                root;         // Word address.
     shading_t                   shading;
     logic [2:0][31:0]           light;
-    logic                       lod_words;  // The octree memory is in the dialect lod.
-    logic [LodScaleBits-1:0]    lod_scale;  // 0: rays stop at leaves alone.
+    logic                       lod_words;    // The octree memory is in the dialect lod.
+    logic [LodScaleBits-1:0]    lod_scale;    // 0: rays stop at leaves alone.
   } frame_t;
 
   // The world of a frame; held during it.
@@ -312,13 +312,13 @@ package voxrt_pkg;
 
   // What the slot scheduler decides at stage 9 of a lane.
   typedef struct packed {
-    logic                       issues;    // The ray that waits gets the slot.
-    logic                       bypasses;  // The ray that waits is resolved: it needs no slot.
-    logic                       reflects;  // The ray of the slot starts again at the root.
-    logic                       keeps;     // The slot keeps its ray.
-    logic signed [DepthLimit+1:0] shift;   // Of a reflected ray's origin: side - 2 * plane, voxels.
-    logic [2:0]                 mirrored;  // Of the slot's ray from now on.
-    logic [2:0]                 set;       // As in step_t, from now on.
+    logic                         issues;    // The ray that waits gets the slot.
+    logic                         bypasses;  // The ray that waits is resolved: it needs no slot.
+    logic                         reflects;  // The ray of the slot starts again at the root.
+    logic                         keeps;     // The slot keeps its ray.
+    logic signed [DepthLimit+1:0] shift;     // Of a reflected ray's origin: side - 2 * plane, voxels.
+    logic [2:0]                   mirrored;  // Of the slot's ray from now on.
+    logic [2:0]                   set;       // As in step_t, from now on.
   } decision_t;
 
   // What rays are, in the stages of a lane that ask.
@@ -349,7 +349,7 @@ package voxrt_pkg;
   // Sums of colours, and of how many.
   localparam int unsigned ColourSumBits = 8 + BounceBits;
   typedef struct packed {
-    logic [2:0][ColourSumBits-1:0] sum;    // Red is 0.
+    logic [2:0][ColourSumBits-1:0] total;  // Red is 0.
     logic [BounceBits:0]           count;
   } mirrors_t;
 
@@ -403,17 +403,16 @@ package voxrt_pkg;
     logic [31:0] word_requests;  // Lanes have asked for a word, which they did not always get.
     logic [31:0] line_requests;  // Caches of lanes have asked for a line.
     logic [31:0] lines_read;     // Lines of 32 bytes, from the external memory.
-    logic [31:0] cycles;      // From the start to the last pixel accepted.
-    logic [31:0] rays;        // Pixels accepted.
+    logic [31:0] cycles;         // From the start to the last pixel accepted.
+    logic [31:0] rays;           // Pixels accepted.
     logic [31:0] words_read;
-    logic [31:0] hits;        // Pixels accepted that show a material.
-    logic [31:0] stalls;      // Clocks in which a pixel waited to be accepted.
+    logic [31:0] hits;           // Pixels accepted that show a material.
+    logic [31:0] stalls;         // Clocks in which a pixel waited to be accepted.
   } counters_t;
 
   // The detail of a pixel between lane and shader: {shade, payload}.
   function automatic int detail_bits(int max_depth, bit light, bit mirrors);
-    return $bits(shade_e) +
-        larger(light ? 3 + 3 * (max_depth + FractionBits) : 1, mirrors ? $bits(mirrors_t) : 1);
+    return $bits(shade_e) + larger(light ? 3 + 3 * (max_depth + FractionBits) : 1, mirrors ? $bits(mirrors_t) : 1);
   endfunction
 
   // A pixel between lane and shader: its detail and a pixel_t below it; or the pixel_t alone.

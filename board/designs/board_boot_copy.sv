@@ -38,12 +38,12 @@ module board_boot_copy
     initial $readmemh(File, rows_q);
   end
 
-  state_e               state_q;
+  state_e state_q;
   logic [BlockBits-1:0] block_q;
-  logic [          3:0] step_q;
+  logic [3:0] step_q;
   logic [BlockBits+2:0] place, place_q;
-  logic [         31:0] word;
-  logic [        255:0] data_q;
+  logic [31:0] word;
+  logic [255:0] data_q;
 
   // Each row is written back as it was read: without a write port it would be a ROM to yosys, which lays ROMs out in a way
   // that voxrt.board.designs.base_design does not know. The reset lasts until the first row has been read.

@@ -9,8 +9,8 @@ module board_crc32 (
   output logic        right_o   // The last four bytes were the CRC of those before.
 );
   logic [31:0] crc_q;
-  logic [ 7:0] byte_q;
-  logic [ 3:0] left_q;
+  logic [7:0] byte_q;
+  logic [3:0] left_q;
 
   assign busy_o  = left_q != '0;
   assign crc_o   = ~crc_q;

@@ -8,14 +8,14 @@ module board_event #(
   input  logic             send_i,
   input  logic [Width-1:0] value_i,
   input  logic             to_clk_i,
-  output logic             received_o,  // For one clock, value_o from then on.
+  output logic             received_o,   // For one clock, value_o from then on.
   output logic [Width-1:0] value_o
 );
   if (Width < 1) begin : gen_bad_width
     $error("board_event: Width must be 1 bit or more");
   end
 
-  logic             toggle_q, toggle, last_q;
+  logic toggle_q, toggle, last_q;
   logic [Width-1:0] value_q;
 
   always_ff @(posedge from_clk_i) begin

@@ -5,16 +5,16 @@
 module board_frame_swap (
   input  logic       clk_i,
   input  logic       rst_ni,
-  input  logic       new_frame_i,  // The core starts a frame; for one clock.
-  input  logic [1:0] scale_i,      // Of that frame.
-  input  logic       reading_i,    // The screen reads a frame.
-  output logic       hold_o,       // The new frame waits.
-  output logic       drawn_o,      // The frame that the core draws.
+  input  logic       new_frame_i,    // The core starts a frame; for one clock.
+  input  logic [1:0] scale_i,        // Of that frame.
+  input  logic       reading_i,      // The screen reads a frame.
+  output logic       hold_o,         // The new frame waits.
+  output logic       drawn_o,        // The frame that the core draws.
   output logic       shown_o,
   output logic [1:0] shown_scale_o,
-  output logic       visible_o     // There is a frame to be shown.
+  output logic       visible_o       // There is a frame to be shown.
 );
-  logic       pending_q, began_q;
+  logic pending_q, began_q;
   logic [1:0] scale_q, drawn_scale_q;
 
   assign hold_o = new_frame_i || pending_q;

@@ -19,11 +19,11 @@ module board_frame_writer
   output logic [ 15:0] mask_o,
   output logic [255:0] data_o
 );
-  logic         full_q, last_q, frame_q, beyond, accepts;
-  logic [  6:0] line_q;         // Of the row; 64 and more are beyond.
-  logic [  8:0] row_q;
-  logic [  2:0] word_q, word;
-  logic [ 15:0] mask_q;
+  logic full_q, last_q, frame_q, beyond, accepts;
+  logic [6:0] line_q;  // Of the row; 64 and more are beyond.
+  logic [8:0] row_q;
+  logic [2:0] word_q, word;
+  logic [15:0] mask_q;
   logic [255:0] data_q;
 
   assign s_axis_tready = !full_q && !(s_axis_tuser && hold_i);

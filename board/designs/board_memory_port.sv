@@ -9,29 +9,29 @@ module board_memory_port
   // Of the octree memory: word 0 is the last of line 0, a block has a line. 2 .. 2**20.
   parameter int unsigned Lines = 983_040
 ) (
-  input  logic                 clk_i,
-  input  logic                 rst_ni,
+  input  logic                  clk_i,
+  input  logic                  rst_ni,
   // Masters, as board_bus has them.
-  input  logic    [1:0]        valid_i,
-  input  access_t [1:0]        access_i,
-  output logic    [1:0]        done_o,
-  output logic    [1:0][31:0]  data_o,
-  output logic    [1:0]        refused_o,
-  output logic                 written_o,      // A word of the SDRAM was written; for one clock.
+  input  logic    [  1:0]       valid_i,
+  input  access_t [  1:0]       access_i,
+  output logic    [  1:0]       done_o,
+  output logic    [  1:0][31:0] data_o,
+  output logic    [  1:0]       refused_o,
+  output logic                  written_o,      // A word of the SDRAM was written; for one clock.
   // board_bus.
-  output logic    [1:0]        bus_valid_o,
-  input  logic    [1:0]        bus_done_i,
-  input  logic    [31:0]       bus_data_i,
-  input  logic                 bus_refused_i,
+  output logic    [  1:0]       bus_valid_o,
+  input  logic    [  1:0]       bus_done_i,
+  input  logic    [ 31:0]       bus_data_i,
+  input  logic                  bus_refused_i,
   // A port of the SDRAM's arbiter.
-  output logic                 valid_o,
-  input  logic                 ready_i,
-  output logic                 write_o,
-  output logic    [19:0]       line_o,
-  output logic    [15:0]       mask_o,
-  output logic    [255:0]      line_data_o,
-  input  logic                 done_i,
-  input  logic    [255:0]      line_data_i
+  output logic                  valid_o,
+  input  logic                  ready_i,
+  output logic                  write_o,
+  output logic    [ 19:0]       line_o,
+  output logic    [ 15:0]       mask_o,
+  output logic    [255:0]       line_data_o,
+  input  logic                  done_i,
+  input  logic    [255:0]       line_data_i
 );
   if (Lines < 2 || Lines > 2 ** 20) begin : gen_bad_lines
     $error("board_memory_port: Lines must be 2 to 2**20 lines");
@@ -48,14 +48,14 @@ module board_memory_port
     Done
   } state_e;
 
-  state_e              state_q;
-  logic                master_q, is_word_q;
-  logic [         1:0] mine, asks, done_q;
-  access_t             access, access_q;
+  state_e state_q;
+  logic master_q, is_word_q;
+  logic [1:0] mine, asks, done_q;
+  access_t access, access_q;
   logic [PageBits-1:0] page_q;
-  logic [        23:0] place;  // Of the word, from the beginning of the SDRAM.
-  logic                beyond;
-  logic [        31:0] data_q;
+  logic [23:0] place;  // Of the word, from the beginning of the SDRAM.
+  logic beyond;
+  logic [31:0] data_q;
 
   for (genvar m = 0; m < 2; m++) begin : gen_master
     assign mine[m]        = access_i[m].address[23] || access_i[m].address inside {Page, Blocks};

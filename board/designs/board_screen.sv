@@ -6,16 +6,16 @@ module board_screen
   input  logic             rst_ni,
   // The line buffer.
   output logic             row_begin_o,
-  output logic [9:0]       row_o,
-  output logic [9:0]       column_o,
+  output logic [ 9:0]      row_o,
+  output logic [ 9:0]      column_o,
   input  logic [23:0]      pixel_i,      // Three clocks after column_o.
   // Blue, green, red.
-  output logic [2:0][9:0]  words_o
+  output logic [ 2:0][9:0] words_o
 );
   localparam int unsigned Clocks = 3;  // From a column to its pixel.
 
   logic [9:0] column_q, row_q;
-  logic       last_column;
+  logic last_column;
   logic [Clocks-1:0] visible_q, hsync_q, vsync_q;  // Syncs are low while they pulse.
 
   assign last_column = column_q == 10'(ColumnsTotal - 1);

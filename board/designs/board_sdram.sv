@@ -46,13 +46,13 @@ module board_sdram #(
   localparam int unsigned RefreshClocks = (ClockHz / 1000) * 64 / 8192 - 80;
   localparam int unsigned CountBits = $clog2(PowerOnClocks + 128);
   localparam int unsigned RefreshBits = $clog2(RefreshClocks + 1);
-  localparam logic [12:0] Mode = 13'h033;          // Bursts of 8, sequential, CAS latency 3.
-  localparam logic [ 2:0] RefreshWait = 3'd6;      // tRFC.
-  localparam logic [ 1:0] RowWait = 2'd1;          // tRCD, less the clock that sees it.
-  localparam logic [ 3:0] CloseAfterRead = 4'd10;  // From the last burst's command: the burst, tRP.
-  localparam logic [ 3:0] CloseAfterWrite = 4'd11; // The burst, tWR, tRP.
-  localparam logic [ 4:0] ReadToWrite = 5'd20;     // The chip has let go of the data.
-  localparam int unsigned DoneClocks = 21;         // From a line's first command to its last half word.
+  localparam logic [12:0] Mode = 13'h033;  // Bursts of 8, sequential, CAS latency 3.
+  localparam logic [2:0] RefreshWait = 3'd6;  // tRFC.
+  localparam logic [1:0] RowWait = 2'd1;  // tRCD, less the clock that sees it.
+  localparam logic [3:0] CloseAfterRead = 4'd10;  // From the last burst's command: the burst, tRP.
+  localparam logic [3:0] CloseAfterWrite = 4'd11;  // The burst, tWR, tRP.
+  localparam logic [4:0] ReadToWrite = 5'd20;  // The chip has let go of the data.
+  localparam int unsigned DoneClocks = 21;  // From a line's first command to its last half word.
 
   // {RAS, CAS, WE}, low.
   typedef enum logic [2:0] {
@@ -71,36 +71,36 @@ module board_sdram #(
     Run
   } state_e;
 
-  state_e                 state_q;
-  command_e               command_q;
-  logic                   selected_q, refresh_due_q;
-  logic [  CountBits-1:0] count_q;
+  state_e state_q;
+  command_e command_q;
+  logic selected_q, refresh_due_q;
+  logic [CountBits-1:0] count_q;
   logic [RefreshBits-1:0] refresh_q;
-  logic [            2:0] refresh_wait_q;
+  logic [2:0] refresh_wait_q;
 
   // The line that waits.
-  logic         next_valid_q, next_open_q, next_write_q;
-  logic [ 19:0] next_line_q;
-  logic [ 15:0] next_mask_q;
+  logic next_valid_q, next_open_q, next_write_q;
+  logic [19:0] next_line_q;
+  logic [15:0] next_mask_q;
   logic [255:0] next_data_q;
-  logic [  1:0] row_wait_q;
+  logic [1:0] row_wait_q;
 
   // The line that streams.
-  logic         streams_q, write_q;
-  logic [  3:0] step_q;
-  logic [  6:0] place_q;      // {column / 16, bank}.
-  logic [ 15:0] mask_q, dq_q;
+  logic streams_q, write_q;
+  logic [3:0] step_q;
+  logic [6:0] place_q;  // {column / 16, bank}.
+  logic [15:0] mask_q, dq_q;
   logic [255:0] data_q;
-  logic [  4:0] turn_q;       // Until a write may start.
+  logic [4:0] turn_q;  // Until a write may start.
 
   // Banks.
-  logic [3:0]      open_q;
+  logic [3:0] open_q;
   logic [3:0][3:0] closes_q;  // Until they may be opened.
 
   logic [DoneClocks-1:0] under_way_q;
-  logic [255:0]          line_q;
-  logic                  starts, second, opens, refreshes;
-  logic [  1:0]          next_bank;
+  logic [255:0] line_q;
+  logic starts, second, opens, refreshes;
+  logic [1:0] next_bank;
 
   assign next_bank = next_line_q[1:0];
   assign second    = streams_q && step_q == 4'd7;

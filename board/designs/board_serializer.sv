@@ -6,7 +6,7 @@ module board_serializer #(
   input  logic                     pixel_clk_i,
   input  logic                     pixel_rst_ni,
   input  logic                     bit_clk_i,
-  input  logic [Channels-1:0][9:0] words_i,      // Bit 0 goes first.
+  input  logic [Channels-1:0][9:0] words_i,       // Bit 0 goes first.
   output logic [Channels-1:0]      pins_o
 );
   if (Channels < 1) begin : gen_bad_channels
@@ -18,7 +18,7 @@ module board_serializer #(
 
   // Words have been still for two bit clocks when they are taken.
   logic [2:0] toggles_q;
-  logic       load;
+  logic load;
 
   always_ff @(posedge bit_clk_i) begin
     toggles_q <= {toggles_q[1:0], pixel_toggle_q};

@@ -28,11 +28,11 @@ module board_uart #(
   localparam int unsigned Step = int'((64'(Baud) * (64'd1 << PhaseBits) + 64'(ClockHz) / 2) / 64'(ClockHz));
 
   // Receive: sample in the middle of each bit.
-  logic                 rx;
+  logic rx;
   logic [PhaseBits-1:0] rx_phase_q;
-  logic                 rx_sample;
-  logic [          3:0] rx_left_q;   // Bits to come, with start and stop.
-  logic [          7:0] rx_bits_q;
+  logic rx_sample;
+  logic [3:0] rx_left_q;  // Bits to come, with start and stop.
+  logic [7:0] rx_bits_q;
 
   board_synchronizer u_rx (
     .clk_i,
@@ -68,9 +68,9 @@ module board_uart #(
 
   // Send.
   logic [PhaseBits-1:0] tx_phase_q, tx_phase;
-  logic                 tx_next;
-  logic [          3:0] tx_left_q;
-  logic [          9:0] tx_bits_q;
+  logic tx_next;
+  logic [3:0] tx_left_q;
+  logic [9:0] tx_bits_q;
 
   assign {tx_next, tx_phase} = tx_phase_q + (PhaseBits + 1)'(Step);
   assign ready_o             = tx_left_q == '0;

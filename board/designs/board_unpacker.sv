@@ -14,8 +14,8 @@ module board_unpacker (
   output logic        line_end_o
 );
   logic [23:0] kept_q;  // Bytes that belong to the next pixel, the first one lowest.
-  logic [ 1:0] bytes_q, bytes;
-  logic        last_q;
+  logic [1:0] bytes_q, bytes;
+  logic last_q;
   logic [23:0] pixel;
 
   // The first word of a frame begins with a pixel, whatever was before.

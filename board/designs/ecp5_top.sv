@@ -17,8 +17,8 @@ module ecp5_top #(
   parameter int unsigned LineBits        = 4,
   parameter int unsigned GapBits         = 22,
   parameter bit          ButtonsLow      = 1'b0,
-  parameter int unsigned Leds            = 8,   // 1 .. 8.
-  parameter int unsigned Highs           = 1,   // Pins that are always 1: 1 or more.
+  parameter int unsigned Leds            = 8,     // 1 .. 8.
+  parameter int unsigned Highs           = 1,     // Pins that are always 1: 1 or more.
   parameter string       OctreeFile      = "",
   parameter string       TableFile       = ""
 ) (

@@ -22,18 +22,18 @@ module ecp5_top_sdram #(
   parameter int unsigned PowerOnUs       = 200,
   parameter int unsigned GapBits         = 22,
   parameter bit          ButtonsLow      = 1'b0,
-  parameter int unsigned Leds            = 8,   // 1 .. 8.
-  parameter int unsigned Highs           = 1,   // Pins that are always 1: 1 or more.
+  parameter int unsigned Leds            = 8,     // 1 .. 8.
+  parameter int unsigned Highs           = 1,     // Pins that are always 1: 1 or more.
   parameter string       OctreeFile      = "",
   parameter string       TableFile       = ""
 ) (
   input  logic             clk,
   input  logic             uart_rx,
   output logic             uart_tx,
-  input  logic [      2:0] buttons,  // Pause, reverse, step.
+  input  logic [      2:0] buttons,     // Pause, reverse, step.
   output logic [ Leds-1:0] leds,
-  output logic [Highs-1:0] high,     // Always 1.
-  output logic [      3:0] dvi,      // Blue, green, red, clock.
+  output logic [Highs-1:0] high,        // Always 1.
+  output logic [      3:0] dvi,         // Blue, green, red, clock.
   output logic             sdram_clk,
   output logic             sdram_cke,
   output logic             sdram_csn,
@@ -86,8 +86,8 @@ module ecp5_top_sdram #(
   logic [7:0] all_leds;
 
   // As board_sdram_pins has them.
-  logic        cke, cs_n, ras_n, cas_n, we_n, dq_oe;
-  logic [ 1:0] ba, dqm;
+  logic cke, cs_n, ras_n, cas_n, we_n, dq_oe;
+  logic [1:0] ba, dqm;
   logic [12:0] a;
   logic [15:0] dq_out, dq_in;
 

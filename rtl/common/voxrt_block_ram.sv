@@ -12,7 +12,7 @@ module voxrt_block_ram #(
   input  logic                     a_write_i,
   input  logic [$clog2(Depth)-1:0] a_row_i,
   input  logic [        Width-1:0] a_data_i,
-  output logic [        Width-1:0] a_data_o,  // Two clocks after a_read_i.
+  output logic [        Width-1:0] a_data_o,   // Two clocks after a_read_i.
   input  logic                     b_read_i,
   input  logic [$clog2(Depth)-1:0] b_row_i,
   output logic [        Width-1:0] b_data_o

@@ -21,18 +21,18 @@ module voxrt_divide #(
   end
 
   // Before stage s: the remainder (highest bit: negative), then the dividend's bits to come and the quotient's so far.
-  logic [DivisorBits:0]    remainder[QuotientBits+1];
-  logic [QuotientBits-1:0] bits   [QuotientBits+1];
-  logic [DivisorBits-1:0]  divisor  [QuotientBits+1];
+  logic [DivisorBits:0] remainder[QuotientBits+1];
+  logic [QuotientBits-1:0] bits[QuotientBits+1];
+  logic [DivisorBits-1:0] divisor[QuotientBits+1];
 
   assign {remainder[0], bits[0]} = {1'b0, dividend_i};
   assign divisor[0]                = divisor_i;
   assign quotient_o                = bits[QuotientBits];
 
   for (genvar s = 0; s < QuotientBits; s++) begin : gen_bit
-    logic                    subtracts, carry;
-    logic [DivisorBits:0]    sum, remainder_q;
-    logic [DivisorBits-1:0]  divisor_q;
+    logic subtracts, carry;
+    logic [DivisorBits:0] sum, remainder_q;
+    logic [DivisorBits-1:0] divisor_q;
     logic [QuotientBits-1:0] bits_q;
 
     assign subtracts = !remainder[s][DivisorBits];

@@ -23,7 +23,7 @@ module voxrt_fifo #(
 
   localparam int unsigned IndexBits = $clog2(Depth);
 
-  logic [Width-1:0]   data_q[Depth];
+  logic [Width-1:0] data_q[Depth];
   logic [IndexBits:0] write_q, read_q;
 
   assign ready_o = write_q != (read_q ^ {1'b1, IndexBits'(0)});

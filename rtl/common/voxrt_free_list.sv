@@ -20,7 +20,7 @@ module voxrt_free_list #(
 
   logic [RowBits-1:0] freed_q[2 ** RowBits];
   logic [RowBits-1:0] allocate_q, free_q;
-  logic               all_allocated_once_q;
+  logic all_allocated_once_q;
 
   assign row_o = all_allocated_once_q ? freed_q[allocate_q] : allocate_q;
 

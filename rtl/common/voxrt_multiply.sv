@@ -34,17 +34,17 @@ module voxrt_multiply
   if (MultiplierBits >= 25 && LogicBits > 0) begin : gen_split
     localparam int unsigned HighBits = ProductBits - LogicBits;
     // The narrower number's bits, two per row, choose multiples of the other.
-    localparam bit          AChooses = LogicBits < BBits;
+    localparam bit AChooses = LogicBits < BBits;
     localparam int unsigned ChooseBits = AChooses ? LogicBits : BBits;
     localparam int unsigned ChosenBits = AChooses ? BBits : LogicBits;
     localparam int unsigned Rows = (ChooseBits + 1) / 2;
     localparam int unsigned LowBits = LogicBits + BBits;
 
-    logic [2*Rows-1:0]     chooses;
+    logic [2*Rows-1:0] chooses;
     logic [ChosenBits-1:0] chosen;
-    logic [LowBits-1:0]    low, low1_q;
-    logic [HighBits-1:0]   high1_q, high2_q;
-    logic [LogicBits-1:0]  low2_q;
+    logic [LowBits-1:0] low, low1_q;
+    logic [HighBits-1:0] high1_q, high2_q;
+    logic [LogicBits-1:0] low2_q;
 
     if (AChooses) begin : gen_a_chooses
       assign chooses = (2 * Rows)'(a_i[LogicBits-1:0]);
@@ -85,8 +85,8 @@ module voxrt_multiply
 
     logic [AParts*APart-1:0] a;
     logic [BParts*BPart-1:0] b;
-    logic [ APart+BPart-1:0] part1_q[AParts][BParts];
-    logic [ ProductBits-1:0] sum;
+    logic [APart+BPart-1:0] part1_q[AParts][BParts];
+    logic [ProductBits-1:0] sum;
 
     assign a = (AParts * APart)'(a_i);
     assign b = (BParts * BPart)'(b_i);

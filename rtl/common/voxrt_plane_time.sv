@@ -7,7 +7,7 @@
 module voxrt_plane_time
   import voxrt_pkg::*;
 #(
-  parameter int unsigned DistanceBits = 18,  // Signed: 2 .. DistanceLimit.
+  parameter int unsigned DistanceBits = 18,                        // Signed: 2 .. DistanceLimit.
   // T modulo 2**TimeBits: 18 .. DistanceBits + WeightBits.
   parameter int unsigned TimeBits     = DistanceBits + WeightBits
 ) (
@@ -27,11 +27,11 @@ module voxrt_plane_time
     localparam int unsigned LowBits = 17;
     localparam int unsigned HighBits = TimeBits - LowBits;
 
-    logic signed [    DistanceBits+LowBits-1:0] low1_q, low2_q;
-    logic signed [            DistanceBits-1:0] distance1_q;
-    logic        [WeightBits-LowBits-1:0]       weight1_q;
-    logic signed [                HighBits-1:0] high2_q, sum3_q;
-    logic        [                 LowBits-1:0] low3_q;
+    logic signed [DistanceBits+LowBits-1:0] low1_q, low2_q;
+    logic signed [DistanceBits-1:0] distance1_q;
+    logic [WeightBits-LowBits-1:0] weight1_q;
+    logic signed [HighBits-1:0] high2_q, sum3_q;
+    logic [LowBits-1:0] low3_q;
 
     always_ff @(posedge clk_i) begin
       low1_q      <= (DistanceBits + LowBits)'(distance_i) * $signed((DistanceBits + LowBits)'(weight_i[LowBits-1:0]));
@@ -50,8 +50,8 @@ module voxrt_plane_time
     localparam int unsigned LowBits = MultiplierSide;  // Of the distance.
     localparam int unsigned ProductBits = MultiplierBits + PartBits;
 
-    logic        [      Parts*PartBits-1:0] weight;
-    logic signed [            PartBits  :0] weight_part[Parts];
+    logic [Parts*PartBits-1:0] weight;
+    logic signed [PartBits : 0] weight_part[Parts];
     logic signed [DistanceBits+PartBits-1:0] part2_q[Parts];
 
     assign weight = (Parts * PartBits)'(weight_i);
@@ -63,9 +63,9 @@ module voxrt_plane_time
     if (DistanceBits > MultiplierBits) begin : gen_two
       localparam int unsigned HighBits = DistanceBits - LowBits;
 
-      logic signed [        LowBits:0] low_distance;
-      logic signed [     HighBits-1:0] high_distance;
-      logic signed [  ProductBits-1:0] low1_q[Parts];
+      logic signed [LowBits:0] low_distance;
+      logic signed [HighBits-1:0] high_distance;
+      logic signed [ProductBits-1:0] low1_q[Parts];
       logic signed [HighBits+PartBits-1:0] high1_q[Parts];
 
       assign low_distance  = $signed({1'b0, distance_i[LowBits-1:0]});
@@ -92,7 +92,7 @@ module voxrt_plane_time
     localparam int unsigned UpperBits = TimeBits - PartBits;
 
     logic signed [UpperBits-1:0] sum3_q;
-    logic        [ PartBits-1:0] low3_q;
+    logic [PartBits-1:0] low3_q;
 
     always_ff @(posedge clk_i) begin
       sum3_q <= UpperBits'(part2_q[1]) + $signed({(UpperBits - PartBits)'(part2_q[2]), PartBits'(0)}) +

@@ -19,14 +19,14 @@ module voxrt_stream_register #(
     $error("voxrt_stream_register: Width must be 1 bit or more");
   end
 
-  logic             valid_q;
+  logic valid_q;
   logic [Width-1:0] data_q;
 
   assign valid_o = valid_q;
   assign data_o  = data_q;
 
   if (CutsReady) begin : gen_cuts_ready
-    logic             second_valid_q;
+    logic second_valid_q;
     logic [Width-1:0] second_q;
 
     assign ready_o = !second_valid_q;

@@ -4,7 +4,7 @@ module voxrt_three_plane_times
   import voxrt_pkg::*;
 #(
   parameter int unsigned RayClocks    = 1,
-  parameter int unsigned DistanceBits = 18,  // As voxrt_plane_time has them.
+  parameter int unsigned DistanceBits = 18,                        // As voxrt_plane_time has them.
   parameter int unsigned TimeBits     = DistanceBits + WeightBits
 ) (
   input  logic                           clk_i,
@@ -31,9 +31,9 @@ module voxrt_three_plane_times
     end
   end else begin : gen_shared
     logic signed [DistanceBits-1:0] distance;
-    logic        [  WeightBits-1:0] weight;
-    logic        [    TimeBits-1:0] plane_time;
-    logic        [    TimeBits-1:0] times[3];
+    logic [WeightBits-1:0] weight;
+    logic [TimeBits-1:0] plane_time;
+    logic [TimeBits-1:0] times[3];
 
     always_comb begin
       distance = distance_i[2];

@@ -1,10 +1,10 @@
 // Three products of whole numbers: each by a multiplier of its own, two clocks later; or all by one (RayClocks = 4), two
 // beats later. Values stay for a beat (voxrt_turns).
 module voxrt_three_products #(
-  parameter int unsigned     RayClocks = 1,
-  parameter int unsigned     ABits     = 20,  // As voxrt_multiply has them.
-  parameter int unsigned     BBits     = 20,
-  parameter bit [2:0][7:0]   LogicBits = '0   // As voxrt_multiply has it, of each product; of a shared one, none.
+  parameter int unsigned RayClocks = 1,
+  parameter int unsigned ABits = 20,  // As voxrt_multiply has them.
+  parameter int unsigned BBits = 20,
+  parameter bit [2:0][7:0] LogicBits = '0  // As voxrt_multiply has it, of each product; of a shared one, none.
 ) (
   input  logic                   clk_i,
   input  logic [            1:0] turn_i,
@@ -30,8 +30,8 @@ module voxrt_three_products #(
       );
     end
   end else begin : gen_shared
-    logic [      ABits-1:0] a;
-    logic [      BBits-1:0] b;
+    logic [ABits-1:0] a;
+    logic [BBits-1:0] b;
     logic [ABits+BBits-1:0] product;
 
     always_comb begin

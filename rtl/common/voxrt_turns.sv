@@ -10,7 +10,7 @@ module voxrt_turns #(
 );
   if (RayClocks > 1) begin : gen_beat
     logic [1:0] turn_q;
-    logic       advance_q;
+    logic advance_q;
 
     always_ff @(posedge clk_i) begin
       turn_q    <= turn_q + 2'd1;

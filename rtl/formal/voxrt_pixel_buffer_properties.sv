@@ -5,21 +5,21 @@ module voxrt_pixel_buffer_properties #(
   parameter int unsigned Width = 3,
   parameter int unsigned Depth = 4
 ) (
-  input logic               clk_i,
-  input logic               rst_ni,
-  input logic               allocate_i,
-  input logic               complete_i,
+  input logic                   clk_i,
+  input logic                   rst_ni,
+  input logic                   allocate_i,
+  input logic                   complete_i,
   input logic [$clog2(Depth):0] tag_i,
-  input logic               lit_i,
-  input logic               store_i,
-  input logic [  Width-1:0] pixel_i,
-  input logic               ready_i
+  input logic                   lit_i,
+  input logic                   store_i,
+  input logic [      Width-1:0] pixel_i,
+  input logic                   ready_i
 );
   localparam int unsigned TagBits = $clog2(Depth) + 1;
 
-  logic               ready_o, valid_o, lit_o;
+  logic ready_o, valid_o, lit_o;
   logic [TagBits-1:0] tag_o;
-  logic [  Width-1:0] pixel_o;
+  logic [Width-1:0] pixel_o;
 
   voxrt_pixel_buffer #(
     .Width        (Width),
@@ -67,10 +67,10 @@ module voxrt_pixel_buffer_properties #(
   logic [CountBits-1:0] target;
   always_ff @(posedge clk_i) target <= target;
   logic [CountBits-1:0] allocated_q, read_q;
-  logic                 completed_q, stored_q, lit_q;
-  logic [  TagBits-1:0] tag_q;
-  logic [    Width-1:0] pixel_q;
-  logic                 is_target, completes_now;
+  logic completed_q, stored_q, lit_q;
+  logic [TagBits-1:0] tag_q;
+  logic [Width-1:0] pixel_q;
+  logic is_target, completes_now;
 
   assign is_target = !completed_q &&
       (allocated_q > target ? tag_i == tag_q : allocated_q == target && allocate_i && tag_i == tag_o);

@@ -10,47 +10,47 @@ module voxrt_buffered_lane
   parameter int unsigned MaxDepth     = 10,
   parameter int unsigned PositionBits = 17,
   parameter int unsigned BlockBits    = 12,
-  parameter int unsigned MemoryClocks = 2,   // From an address to its word, as memory_clocks has it: 2 .. 5.
-  parameter int unsigned RowBits      = 5,   // 2**RowBits rays, in slots and waiting: 5, or, as with Light, 6.
-  parameter int unsigned RayDepth     = 16,  // Waiting rays, of each kind: a power of two, 2 .. 2**RowBits.
-  parameter int unsigned CreditClocks = 1,   // credit_o does not count what was issued so many clocks before: 1 .. 3.
+  parameter int unsigned MemoryClocks = 2,     // From an address to its word, as memory_clocks has it: 2 .. 5.
+  parameter int unsigned RowBits      = 5,     // 2**RowBits rays, in slots and waiting: 5, or, as with Light, 6.
+  parameter int unsigned RayDepth     = 16,    // Waiting rays, of each kind: a power of two, 2 .. 2**RowBits.
+  parameter int unsigned CreditClocks = 1,     // credit_o does not count what was issued so many clocks before: 1 .. 3.
   parameter bit          Light        = 1'b0,
   parameter bit          Mirrors      = 1'b0,
   parameter bit          Lod          = 1'b0
 ) (
-  input  logic                                           clk_i,
-  input  logic                                           rst_ni,
+  input logic clk_i,
+  input logic rst_ni,
   // Held during a frame; see voxrt_lane.
-  input  world_t                                         world_i,
-  input  logic            [ payload_bits(BlockBits, Lod):0]   root_i,
-  input  shading_t                                       shading_i,
-  input  light_planes_t                                  light_planes_i,
-  input  material_write_t                                material_write_i,
+  input world_t world_i,
+  input logic [payload_bits(BlockBits, Lod):0] root_i,
+  input shading_t shading_i,
+  input light_planes_t light_planes_i,
+  input material_write_t material_write_i,
   // Rays.
-  input  logic                                           issue_i,
-  output logic                                           credit_o,
-  input  logic                                           ray_valid_i,
-  input  ray_t                                           ray_i,
-  input  weights_t                                       weights_i,
-  output logic                                           shadow_issued_o,    // A shadow ray has left its queue.
+  input logic issue_i,
+  output logic credit_o,
+  input logic ray_valid_i,
+  input ray_t ray_i,
+  input weights_t weights_i,
+  output logic shadow_issued_o,  // A shadow ray has left its queue.
   // Octree memory.
-  output logic                                           mem_read_o,
-  output logic            [BlockBits+2:0]                mem_address_o,
-  input  logic                                           mem_ack_i,
-  input  logic            [payload_bits(BlockBits, Lod):0] mem_word_i,
+  output logic mem_read_o,
+  output logic [BlockBits+2:0] mem_address_o,
+  input logic mem_ack_i,
+  input logic [payload_bits(BlockBits, Lod):0] mem_word_i,
   // To voxrt_light.
-  output logic                                           hit_point_claim_o,
-  output logic                                           hit_point_valid_o,
-  input  logic                                           hit_point_ready_i,
-  output hit_point_t                                     hit_point_o,
+  output logic hit_point_claim_o,
+  output logic hit_point_valid_o,
+  input logic hit_point_ready_i,
+  output hit_point_t hit_point_o,
   // Pixels, in order.
-  output logic                                           pixel_valid_o,
-  input  logic                                           pixel_ready_i,
-  output logic                                           lit_o,
+  output logic pixel_valid_o,
+  input logic pixel_ready_i,
+  output logic lit_o,
   output logic [pixel_bits(MaxDepth, Light, Mirrors)-1:0] pixel_o,
   // Errors, for one clock each.
-  output logic                                           bad_pointer_o,
-  output logic                                           step_limit_o
+  output logic bad_pointer_o,
+  output logic step_limit_o
 );
   if (MemoryClocks < 2 || MemoryClocks > 5) begin : gen_bad_memory_clocks
     $error("voxrt_buffered_lane: MemoryClocks must be 2 to 5 clocks");
@@ -82,15 +82,15 @@ module voxrt_buffered_lane
 
   typedef logic [2:0][OriginBits-1:0] origin_t;
 
-  queued_t                arriving, queued;
-  origin_t                arriving_origin, origin;
-  logic                   ray_valid, ray_ready, shadow, lit;
-  logic     [TagBits-1:0] tag;
-  pixel_t                 pixel;
-  logic     [RowBits-1:0] arrival_row;
-  row_free_t              row_free;
-  weights_write_t         weights_write;
-  ray_t                   ray;
+  queued_t arriving, queued;
+  origin_t arriving_origin, origin;
+  logic ray_valid, ray_ready, shadow, lit;
+  logic [TagBits-1:0] tag;
+  pixel_t pixel;
+  logic [RowBits-1:0] arrival_row;
+  row_free_t row_free;
+  weights_write_t weights_write;
+  ray_t ray;
 
   always_comb begin
     arriving = '{
@@ -106,12 +106,7 @@ module voxrt_buffered_lane
   end
 
   // The weights of a ray go to the lane when it comes, all else through the queue.
-  assign weights_write = '{
-      valid: ray_valid_i,
-      row: RowLimit'(arrival_row),
-      weights: weights_i,
-      reach: ray_i.reach
-  };
+  assign weights_write = '{valid: ray_valid_i, row: RowLimit'(arrival_row), weights: weights_i, reach: ray_i.reach};
 
   voxrt_free_list #(
     .RowBits(RowBits)
@@ -129,7 +124,7 @@ module voxrt_buffered_lane
   localparam int unsigned Credits = Rows < RayDepth ? Rows : RayDepth;
   localparam int unsigned CountBits = $clog2(RayDepth) + 1;
   logic [CountBits-1:0] credits_q;
-  logic                 returned_q, credit_q;
+  logic returned_q, credit_q;
 
   assign credit_o        = credit_q;
   assign shadow_issued_o = ray_valid && ray_ready && shadow;
@@ -161,9 +156,9 @@ module voxrt_buffered_lane
   end else begin : gen_queue
     // Resolved rays have met the root that is a leaf, or nothing; with mirrors, nothing.
     localparam int unsigned ExtraBits = Mirrors ? $bits(origin_t) : $bits(pixel_t);
-    logic                 unused_ready, head_valid, head_ready;
+    logic unused_ready, head_valid, head_ready;
     logic [ExtraBits-1:0] extra_in, extra, head_extra;
-    queued_t              head;
+    queued_t head;
 
     voxrt_fifo #(
       .Width($bits(queued_t) + ExtraBits),
@@ -224,10 +219,10 @@ module voxrt_buffered_lane
     for (int unsigned a = 0; a < 3; a++) ray.origin[a] = DistanceLimit'($signed(origin[a]));
   end
 
-  logic                  allocate, allocate_ready;
-  logic    [TagBits-1:0] allocate_tag;
-  result_t               result;
-  logic      [Width-1:0] result_pixel;
+  logic allocate, allocate_ready;
+  logic [TagBits-1:0] allocate_tag;
+  result_t result;
+  logic [Width-1:0] result_pixel;
 
   voxrt_lane #(
     .MaxDepth    (MaxDepth),

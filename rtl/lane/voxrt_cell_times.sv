@@ -8,39 +8,39 @@ module voxrt_cell_times
 #(
   parameter int unsigned MaxDepth     = 10,
   parameter int unsigned PositionBits = 17,
-  parameter int unsigned Slots        = 12,  // Rays in the ring of the lane, as lane_slots has it: 12 .. 15.
-  parameter int unsigned RowBits      = 5,   // 2**RowBits rays, in slots and waiting: 5, or, as with Light, 6.
+  parameter int unsigned Slots        = 12,    // Rays in the ring of the lane, as lane_slots has it: 12 .. 15.
+  parameter int unsigned RowBits      = 5,     // 2**RowBits rays, in slots and waiting: 5, or, as with Light, 6.
   parameter bit          Light        = 1'b0,
   parameter bit          Mirrors      = 1'b0
 ) (
-  input  logic                                                   clk_i,
+  input logic clk_i,
   // Held during a frame.
-  input  world_t                                                 world_i,
+  input world_t world_i,
   // The weights of a ray, in the row that holds them until it has ended.
-  input  weights_write_t                                         weights_write_i,
+  input weights_write_t weights_write_i,
   // Stage 1: the cell's lowest corner. Stage 2: the ray's row, the cell's size, one-hot, and whether the far planes are
   // wanted.
-  input  logic                  [$clog2(Slots)-1:0]              slot1_i,
-  input  logic                  [MaxDepth-1:0]                   corner1_i   [3],
-  input  logic                  [2:0]                            mirrored1_i,
-  input  logic                  [2:0]                            dead1_i,
-  input  logic                                                   shadow1_i,
-  input  logic                  [RowBits-1:0]                    row2_i,
-  input  logic                  [MaxDepth-1:0]                   size2_i,
-  input  logic                                                   shadow2_i,
-  input  logic                                                   takes_far2_i,
-  input  logic                                                   takes_near2_i,      // Only with Light.
+  input logic [$clog2(Slots)-1:0] slot1_i,
+  input logic [MaxDepth-1:0] corner1_i[3],
+  input logic [2:0] mirrored1_i,
+  input logic [2:0] dead1_i,
+  input logic shadow1_i,
+  input logic [RowBits-1:0] row2_i,
+  input logic [MaxDepth-1:0] size2_i,
+  input logic shadow2_i,
+  input logic takes_far2_i,
+  input logic takes_near2_i,  // Only with Light.
   // Stage 9: a new ray with its origin; or the ray is reflected by a plane of the key's face.
-  input  logic                  [$clog2(Slots)-1:0]              slot9_i,
-  input  decision_t                                              decision_i,
-  input  logic                  [2:0][DistanceLimit-1:0]         ray_origin_i,
-  input  face_e                                                  key_face_i,
+  input logic [$clog2(Slots)-1:0] slot9_i,
+  input decision_t decision_i,
+  input logic [2:0][DistanceLimit-1:0] ray_origin_i,
+  input face_e key_face_i,
   // Stage 6.
-  output logic                  [key_bits(MaxDepth, Light)-1:0]  time_o      [3],
+  output logic [key_bits(MaxDepth, Light)-1:0] time_o[3],
   // For voxrt_hit_point: stage 3.
-  output weights_t                                               weights3_o,
+  output weights_t weights3_o,
   // For voxrt_lod, with an origin that all rays share: stage 2, near plane - origin, voxels, signed; stage 3.
-  output logic signed [distance_bits(MaxDepth, PositionBits)-FractionBits-1:0] near2_o [3],
+  output logic signed [distance_bits(MaxDepth, PositionBits)-FractionBits-1:0] near2_o[3],
   output logic [distance_bits(MaxDepth, PositionBits)-FractionBits-1:0] reach3_o
 );
   if (Slots < 12 || Slots > 15) begin : gen_bad_slots
@@ -61,9 +61,9 @@ module voxrt_cell_times
   if (Light || Mirrors) begin : gen_own_origin
     logic signed [DistanceBits-1:0] origin_x_q[Slots], origin_y_q[Slots], origin_z_q[Slots];
     logic signed [DistanceBits-1:0] origin1[3], ray_origin[3], near2_q[3], step2, shift;
-    logic signed [  OriginBits-1:0] exact_origin[3];
-    logic signed [    MaxDepth+1:0] planes;
-    logic                           unused_shared;
+    logic signed [OriginBits-1:0] exact_origin[3];
+    logic signed [MaxDepth+1:0] planes;
+    logic unused_shared;
 
     assign unused_shared = &{world_i, mirrored1_i};
     assign near2_o       = '{default: '0};
@@ -99,9 +99,9 @@ module voxrt_cell_times
     end
   end else begin : gen_shared_origin
     localparam int unsigned WholeBits = DistanceBits - FractionBits;
-    logic signed [   WholeBits-1:0] near2_q    [3];
-    logic        [FractionBits-1:0] fraction2_q[3];
-    logic                           unused_origin;
+    logic signed [WholeBits-1:0] near2_q[3];
+    logic [FractionBits-1:0] fraction2_q[3];
+    logic unused_origin;
 
     assign near2_o       = near2_q;
     assign unused_origin = &{ray_origin_i, shadow1_i, shadow2_i, takes_near2_i, slot1_i, slot9_i, decision_i,
@@ -111,7 +111,7 @@ module voxrt_cell_times
     // origin's fraction counts as above 0.
     for (genvar a = 0; a < 3; a++) begin : gen_near
       logic signed [OriginBits-1:0] origin, mirrored_origin;
-      logic                         whole;
+      logic whole;
 
       assign origin          = world_i.origin[a][OriginBits-1:0];
       assign mirrored_origin = world_i.mirrored_origin[a][OriginBits-1:0];
@@ -127,11 +127,11 @@ module voxrt_cell_times
   end
 
   // 3, 4, 5.
-  logic        [WeightBits-1:0] weight_x_q[2**RowBits], weight_y_q[2**RowBits], weight_z_q[2**RowBits];
-  logic        [WeightBits-1:0] weight3_q [3];
-  logic        [   RowBits-1:0] written_row;
+  logic [WeightBits-1:0] weight_x_q[2**RowBits], weight_y_q[2**RowBits], weight_z_q[2**RowBits];
+  logic [WeightBits-1:0] weight3_q[3];
+  logic [RowBits-1:0] written_row;
   logic [OriginBits-FractionBits-1:0] reach_q[2**RowBits], reach3_q;
-  logic signed [  TimeBits-1:0] exact_time[3];
+  logic signed [TimeBits-1:0] exact_time[3];
 
   assign written_row = weights_write_i.row[RowBits-1:0];
 

@@ -20,25 +20,25 @@ module voxrt_hit_point
 #(
   parameter int unsigned MaxDepth = 10
 ) (
-  input  logic                              clk_i,
-  input  logic                              rst_ni,
+  input  logic                                      clk_i,
+  input  logic                                      rst_ni,
   // Stage 3: a ray hits, and may be one to take.
-  input  logic                              hit3_i,
-  input  weights_t                          weights3_i,
+  input  logic                                      hit3_i,
+  input  weights_t                                  weights3_i,
   // Stage 6: -1 - since, signed; the leaf's size, one-hot.
-  input  logic [key_bits(MaxDepth, 1'b1)-1:0] until6_i  [3],
-  input  logic [              MaxDepth-1:0] size6_i,
+  input  logic       [key_bits(MaxDepth, 1'b1)-1:0] until6_i   [3],
+  input  logic       [                MaxDepth-1:0] size6_i,
   // Stage 9: whether the ray there has a place. If it is taken: what is known of its hit point, which is the corner of
   // its leaf, and its material.
-  output logic                              holds9_o,
-  input  logic                              takes9_i,    // Only with holds9_o.
-  input  hit_point_t                        hit9_i,
-  input  material_t                         material9_i,
+  output logic                                      holds9_o,
+  input  logic                                      takes9_i,        // Only with holds9_o.
+  input  hit_point_t                                hit9_i,
+  input  material_t                                 material9_i,
   // Hit points, in order.
-  output logic                              valid_o,
-  input  logic                              ready_i,
-  output hit_point_t                        hit_point_o,
-  output material_t                         material_o
+  output logic                                      valid_o,
+  input  logic                                      ready_i,
+  output hit_point_t                                hit_point_o,
+  output material_t                                 material_o
 );
   // The largest leaf is half of the world.
   localparam int unsigned Bits = MaxDepth - 1 + FractionBits;
@@ -63,14 +63,14 @@ module voxrt_hit_point
   endfunction
 
   // The first place.
-  logic       [         9:4] held_q;   // The stage that its ray is in, one-hot.
-  logic                      taken_q;  // The ray is taken: it waits for the second place.
-  weights_t                  weights_q;
+  logic [9:4] held_q;  // The stage that its ray is in, one-hot.
+  logic taken_q;  // The ray is taken: it waits for the second place.
+  weights_t weights_q;
   logic [2:0][SinceBits-1:0] until_q;
-  move_e                     move_q, move;
-  hit_point_t                hit_q;
-  material_t                 material_q;
-  logic                      holds3;
+  move_e move_q, move;
+  hit_point_t hit_q;
+  material_t material_q;
+  logic holds3;
 
   assign holds3   = hit3_i && held_q == '0 && !taken_q;
   assign holds9_o = held_q[9];
@@ -95,14 +95,14 @@ module voxrt_hit_point
   end
 
   // The second place. The bits found take the place of the lower bits of since.
-  logic                       busy_q, done_q;
-  logic       [CountBits-1:0] left_q;
-  weights_t                   divisor_q;
-  logic [2:0][WeightBits:0]   remainder_q, sum;  // Signed.
-  logic [2:0][      Bits-1:0] lower_q;
-  logic [2:0][ SinceBits-1:0] since, next;  // Remainder and lower bits, without the sign.
-  hit_point_t                 result_q;
-  material_t                  result_material_q;
+  logic busy_q, done_q;
+  logic [CountBits-1:0] left_q;
+  weights_t divisor_q;
+  logic [2:0][WeightBits:0] remainder_q, sum;  // Signed.
+  logic [2:0][Bits-1:0] lower_q;
+  logic [2:0][SinceBits-1:0] since, next;  // Remainder and lower bits, without the sign.
+  hit_point_t result_q;
+  material_t result_material_q;
 
   assign move = taken_q && !busy_q ? move_q : Stay;
 

@@ -35,48 +35,48 @@ module voxrt_lane
   parameter int unsigned MaxDepth     = 10,
   parameter int unsigned PositionBits = 17,
   parameter int unsigned BlockBits    = 12,
-  parameter int unsigned MemoryClocks = 2,  // From an address to its word, as memory_clocks has it: 2 .. 5.
-  parameter int unsigned RowBits      = 5,  // 2**RowBits rays, in slots and waiting: 5, or, as with Light, 6.
+  parameter int unsigned MemoryClocks = 2,     // From an address to its word, as memory_clocks has it: 2 .. 5.
+  parameter int unsigned RowBits      = 5,     // 2**RowBits rays, in slots and waiting: 5, or, as with Light, 6.
   parameter bit          Light        = 1'b0,
   parameter bit          Mirrors      = 1'b0,
   parameter bit          Lod          = 1'b0
 ) (
-  input  logic                                            clk_i,
-  input  logic                                            rst_ni,
+  input logic clk_i,
+  input logic rst_ni,
   // Held during a frame.
-  input  world_t                                          world_i,
-  input  logic            [payload_bits(BlockBits, Lod):0]     root_i,             // A leaf only with Light or Mirrors.
-  input  shading_t                                        shading_i,
-  input  light_planes_t                                   light_planes_i,
+  input world_t world_i,
+  input logic [payload_bits(BlockBits, Lod):0] root_i,  // A leaf only with Light or Mirrors.
+  input shading_t shading_i,
+  input light_planes_t light_planes_i,
   // Material table, for mirrors.
-  input  material_write_t                                 material_write_i,
+  input material_write_t material_write_i,
   // The weights of a ray that comes later, into a free row; a row that is free again.
-  input  weights_write_t                                  weights_write_i,
-  output row_free_t                                       row_free_o,
+  input weights_write_t weights_write_i,
+  output row_free_t row_free_o,
   // Rays, as voxrt_ray_setup makes them, with their rows; taken in order. Weights are not used.
-  input  logic                                            ray_valid_i,
-  output logic                                            ray_ready_o,
-  input  ray_t                                            ray_i,
-  input  logic            [RowBits-1:0]                   ray_row_i,
+  input logic ray_valid_i,
+  output logic ray_ready_o,
+  input ray_t ray_i,
+  input logic [RowBits-1:0] ray_row_i,
   // Octree memory: the word comes MemoryClocks clocks after its address, or not.
-  output logic                                            mem_read_o,
-  output logic            [BlockBits+2:0]                 mem_address_o,      // {block, octant}
-  input  logic                                            mem_ack_i,
-  input  logic            [payload_bits(BlockBits, Lod):0] mem_word_i,
+  output logic mem_read_o,
+  output logic [BlockBits+2:0] mem_address_o,  // {block, octant}
+  input logic mem_ack_i,
+  input logic [payload_bits(BlockBits, Lod):0] mem_word_i,
   // Reorder buffer. Results of entries that were allocated before, or at this clock.
-  output logic                                            allocate_o,         // Only with allocate_ready_i.
-  input  logic                                            allocate_ready_i,
-  input  logic            [TagBits-1:0]                   allocate_tag_i,
-  output result_t                                         result_o,
+  output logic allocate_o,  // Only with allocate_ready_i.
+  input logic allocate_ready_i,
+  input logic [TagBits-1:0] allocate_tag_i,
+  output result_t result_o,
   output logic [pixel_bits(MaxDepth, Light, Mirrors)-1:0] result_pixel_o,
   // For voxrt_light: a hit point will come, only with hit_point_ready_i or when a shadow ray is issued; it comes.
-  output logic                                            hit_point_claim_o,
-  input  logic                                            hit_point_ready_i,
-  output logic                                            hit_point_valid_o,
-  output hit_point_t                                      hit_point_o,
+  output logic hit_point_claim_o,
+  input logic hit_point_ready_i,
+  output logic hit_point_valid_o,
+  output hit_point_t hit_point_o,
   // Errors, for one clock each.
-  output logic                                            bad_pointer_o,
-  output logic                                            step_limit_o
+  output logic bad_pointer_o,
+  output logic step_limit_o
 );
   if (MemoryClocks < 2 || MemoryClocks > 5) begin : gen_bad_memory_clocks
     $error("voxrt_lane: MemoryClocks must be 2 to 5 clocks");
@@ -97,9 +97,9 @@ module voxrt_lane
   localparam int unsigned WholeBits = distance_bits(MaxDepth, PositionBits) - FractionBits;
 
   // Which slot is in which stage, and whether it has a ray.
-  logic [SlotBits-1:0] slot  [Stages];
+  logic [SlotBits-1:0] slot[Stages];
   logic [SlotBits-1:0] slot_q[Slots];
-  logic [   Slots-1:0] active_q;
+  logic [Slots-1:0] active_q;
 
   always_ff @(posedge clk_i) begin
     for (int unsigned s = 0; s < Slots; s++) slot_q[s] <= slot_q[(s+Slots-1)%Slots];
@@ -110,10 +110,10 @@ module voxrt_lane
 
   // What goes round with a ray, and from stage 0 to 6. Registers hold where no ray is.
   localparam int unsigned CellStages = 7 + Extra;
-  logic [         2:0] mirrored_q[Slots], dead_q[Slots];
-  logic [ RowBits-1:0] row_q     [Slots];
-  logic [MaxDepth-1:0] corner_q  [CellStages][3];
-  logic [MaxDepth-1:0] size_q    [CellStages];
+  logic [2:0] mirrored_q[Slots], dead_q[Slots];
+  logic [RowBits-1:0] row_q[Slots];
+  logic [MaxDepth-1:0] corner_q[CellStages][3];
+  logic [MaxDepth-1:0] size_q[CellStages];
 
   always_ff @(posedge clk_i) begin
     for (int unsigned s = 1; s < CellStages; s++) begin
@@ -126,13 +126,13 @@ module voxrt_lane
 
   // State by slot.
   logic [KeyBits-1:0] key_time_q[Slots];
-  face_e              key_face_q[Slots];
+  face_e key_face_q[Slots];
 
   // 0 fetch.
   logic [BlockBits-1:0] block0_q;
-  logic [2:0]           octant0_q;
-  logic                 root_is_leaf;
-  ray_modes_t           modes;
+  logic [2:0] octant0_q;
+  logic root_is_leaf;
+  ray_modes_t modes;
 
   // Then it is read as if it were eight.
   assign root_is_leaf  = (Light || Mirrors) && root_i[PayloadBits];
@@ -140,11 +140,11 @@ module voxrt_lane
   assign mem_address_o = {block0_q, octant0_q};
 
   // 2 decode.
-  logic                 leaf, bad_pointer, step_limit, arrived;
+  logic leaf, bad_pointer, step_limit, arrived;
   logic [PayloadBits:0] word;
-  leaf_t                content;  // Of a leaf.
-  action_e              action;
-  logic [MaxDepth-1:0]  size2;
+  leaf_t content;  // Of a leaf.
+  action_e action;
+  logic [MaxDepth-1:0] size2;
 
   assign size2       = size_q[2+Extra];
   assign word        = root_is_leaf ? root_i : mem_word_i;
@@ -163,14 +163,14 @@ module voxrt_lane
   end
 
   // With Lod, a ray may stop at a pointer.
-  logic                 stops5;
-  material_t            mean5;
-  action_e              action3_q, action4_q, action5_q, action6_q;
+  logic stops5;
+  material_t mean5;
+  action_e action3_q, action4_q, action5_q, action6_q;
   logic [BlockBits-1:0] block3_q;
-  material_t            material3_q, material4_q, material5_q, material6_q;
-  material_t            material7_q, material8_q, material9_q;
+  material_t material3_q, material4_q, material5_q, material6_q;
+  material_t material7_q, material8_q, material9_q;
   logic [LevelBits-1:0] child_level3_q;
-  logic                 bad_pointer_q, step_limit_q;
+  logic bad_pointer_q, step_limit_q;
 
   // Binary number of a one-hot size.
   function automatic logic [LevelBits-1:0] level_of(logic [MaxDepth-1:0] size);
@@ -195,12 +195,12 @@ module voxrt_lane
   assign step_limit_o  = step_limit_q;
 
   // 1 to 5: T of planes. With Light, a ray that hits needs the near planes of its leaf.
-  decision_t          decision;
-  step_t              next_step, step9;
+  decision_t decision;
+  step_t next_step, step9;
   logic [KeyBits-1:0] time6[3];
   logic signed [WholeBits-1:0] near2[3];
-  logic        [WholeBits-1:0] reach3;
-  weights_t                    weights3;
+  logic [WholeBits-1:0] reach3;
+  weights_t weights3;
 
   voxrt_cell_times #(
     .MaxDepth    (MaxDepth),
@@ -213,24 +213,24 @@ module voxrt_lane
     .clk_i,
     .world_i,
     .weights_write_i,
-    .slot1_i     (slot[1]),
-    .corner1_i   (corner_q[1+Extra]),
-    .mirrored1_i (mirrored_q[1+Extra]),
-    .dead1_i     (dead_q[1+Extra]),
-    .shadow1_i   (modes.shadow1),
-    .row2_i      (row_q[2+Extra]),
-    .size2_i     (size2),
-    .shadow2_i   (modes.shadow2),
-    .takes_far2_i(leaf),
+    .slot1_i      (slot[1]),
+    .corner1_i    (corner_q[1+Extra]),
+    .mirrored1_i  (mirrored_q[1+Extra]),
+    .dead1_i      (dead_q[1+Extra]),
+    .shadow1_i    (modes.shadow1),
+    .row2_i       (row_q[2+Extra]),
+    .size2_i      (size2),
+    .shadow2_i    (modes.shadow2),
+    .takes_far2_i (leaf),
     .takes_near2_i(Light && action == Finish),
-    .slot9_i     (slot[9]),
-    .decision_i  (decision),
-    .ray_origin_i(ray_i.origin),
-    .key_face_i  (step9.key_face),
-    .time_o      (time6),
-    .weights3_o  (weights3),
-    .near2_o     (near2),
-    .reach3_o    (reach3)
+    .slot9_i      (slot[9]),
+    .decision_i   (decision),
+    .ray_origin_i (ray_i.origin),
+    .key_face_i   (step9.key_face),
+    .time_o       (time6),
+    .weights3_o   (weights3),
+    .near2_o      (near2),
+    .reach3_o     (reach3)
   );
 
   // 2 to 5: level of detail.
@@ -259,7 +259,7 @@ module voxrt_lane
   end
 
   logic [KeyBits-1:0] key_time6_q;
-  face_e              key_face6_q;
+  face_e key_face6_q;
 
   always_ff @(posedge clk_i) begin
     action4_q   <= action3_q;
@@ -276,11 +276,11 @@ module voxrt_lane
   end
 
   // 6 to 10: the next cell.
-  logic                leaves_cell9, restarts;
+  logic leaves_cell9, restarts;
   logic [MaxDepth-1:0] top_size, corner8[3], size10, corner11[3], size11;
-  logic [         2:0] octant11;
-  logic [ KeyBits-1:0] exit_time9[3], until6[3];
-  face_e               key_face8, exit_face9;
+  logic [2:0] octant11;
+  logic [KeyBits-1:0] exit_time9[3], until6[3];
+  face_e key_face8, exit_face9;
 
   assign restarts = decision.issues || decision.reflects;
   assign top_size = world_i.side[MaxDepth:1];
@@ -317,9 +317,9 @@ module voxrt_lane
   );
 
   // 3 to 9, beside the ring: hit points.
-  logic       holds9, takes9, point_valid, point_ready;
+  logic holds9, takes9, point_valid, point_ready;
   hit_point_t hit9, point;
-  material_t  point_material;
+  material_t point_material;
 
   if (Light) begin : gen_hit_point
     voxrt_hit_point #(
@@ -351,7 +351,7 @@ module voxrt_lane
 
   // 9 schedule.
   logic [KeyBits-1:0] keys[4];
-  face_e              key_face;
+  face_e key_face;
 
   always_comb begin
     step9          = next_step;
@@ -367,21 +367,21 @@ module voxrt_lane
   ) u_scheduler (
     .clk_i,
     .rst_ni,
-    .side_i     (world_i.side[MaxDepth:0]),
+    .side_i          (world_i.side[MaxDepth:0]),
     .shading_i,
     .light_planes_i,
     .material_write_i,
-    .slot0_i    (slot_q[0]),
-    .slot_i     (slot[1:9]),
-    .modes_o    (modes),
-    .material3_i(material3_q),
-    .corner8_i  (corner8),
-    .key_face8_i(key_face8),
-    .step_i     (step9),
+    .slot0_i         (slot_q[0]),
+    .slot_i          (slot[1:9]),
+    .modes_o         (modes),
+    .material3_i     (material3_q),
+    .corner8_i       (corner8),
+    .key_face8_i     (key_face8),
+    .step_i          (step9),
     .ray_valid_i,
     .ray_ready_o,
     .ray_i,
-    .decision_o (decision),
+    .decision_o      (decision),
     .allocate_o,
     .allocate_ready_i,
     .allocate_tag_i,
@@ -439,8 +439,8 @@ module voxrt_lane
   (* ram_style = "block" *)
   logic [BlockBits-1:0] stack_q[2 ** (SlotBits + LevelBits)];
   logic [BlockBits-1:0] block11_q;
-  logic [          2:0] mirrored11;
-  logic                 top11_q;
+  logic [2:0] mirrored11;
+  logic top11_q;
 
   assign mirrored11 = mirrored_q[11+Extra];
 

@@ -29,10 +29,10 @@ module voxrt_lod
 
   // 2: the farthest near plane. The cell of the origin has none ahead: its distance counts as 0.
   logic signed [WholeBits-1:0] farther, farthest;
-  logic        [WholeBits-2:0] distance3_q;
-  logic        [LevelBits-1:0] level3_q;
-  logic                        pointer3_q;
-  material_t                   mean3_q;
+  logic [WholeBits-2:0] distance3_q;
+  logic [LevelBits-1:0] level3_q;
+  logic pointer3_q;
+  material_t mean3_q;
 
   assign farther  = near_i[0] > near_i[1] ? near_i[0] : near_i[1];
   assign farthest = farther > near_i[2] ? farther : near_i[2];
@@ -47,8 +47,8 @@ module voxrt_lod
   // 3: distance and reach of a voxel.
   logic [WholeBits-2:0] distance4_q;
   logic [WholeBits-1:0] reach4_q;
-  logic                 pointer4_q;
-  material_t            mean4_q;
+  logic pointer4_q;
+  material_t mean4_q;
 
   always_ff @(posedge clk_i) begin
     distance4_q <= distance3_q >> level3_q;
@@ -58,7 +58,7 @@ module voxrt_lod
   end
 
   // 4: compare.
-  logic      stops5_q;
+  logic stops5_q;
   material_t mean5_q;
 
   always_ff @(posedge clk_i) begin

@@ -14,54 +14,54 @@ module voxrt_next_cell
   parameter int unsigned MaxDepth = 10,
   parameter bit          Light    = 1'b0
 ) (
-  input  logic                                   clk_i,
-  input  logic                                   rst_ni,
+  input logic clk_i,
+  input logic rst_ni,
   // Held during a frame.
-  input  logic [MaxDepth-1:0]                    outside_mask_i,  // Bits that are 0 in the world.
-  input  logic [MaxDepth-1:0]                    top_size_i,      // Half of the world.
+  input logic [MaxDepth-1:0] outside_mask_i,  // Bits that are 0 in the world.
+  input logic [MaxDepth-1:0] top_size_i,  // Half of the world.
   // Which of stages 6, 7, 8 have a ray.
-  input  logic [8:6]                             active_i,
+  input logic [8:6] active_i,
   // Stage 6.
-  input  action_e                                action_i,
-  input  logic [key_bits(MaxDepth, Light)-1:0]   time_i      [3], // Of far planes, to leave by; else middle or near.
-  input  logic [key_bits(MaxDepth, Light)-1:0]   key_time_i,
-  input  face_e                                  key_face_i,
-  input  logic [2:0]                             dead_i,
-  input  logic [MaxDepth-1:0]                    corner_i    [3],
-  input  logic [MaxDepth-1:0]                    size_i,
+  input action_e action_i,
+  input logic [key_bits(MaxDepth, Light)-1:0] time_i[3],  // Of far planes, to leave by; else middle or near.
+  input logic [key_bits(MaxDepth, Light)-1:0] key_time_i,
+  input face_e key_face_i,
+  input logic [2:0] dead_i,
+  input logic [MaxDepth-1:0] corner_i[3],
+  input logic [MaxDepth-1:0] size_i,
   // For voxrt_hit_point, where near planes are given.
-  output logic [key_bits(MaxDepth, Light)-1:0]   until_o     [3],
+  output logic [key_bits(MaxDepth, Light)-1:0] until_o[3],
   // Stage 8.
-  output logic [MaxDepth-1:0]                    corner8_o   [3],
-  output face_e                                  key_face8_o,
+  output logic [MaxDepth-1:0] corner8_o[3],
+  output face_e key_face8_o,
   // Stage 9: what the ray has done, and its next key, where it leaves its cell. Material and mirrored are the lane's.
-  output step_t                                  step_o,
-  output logic                                   leaves_cell_o,
-  output logic [key_bits(MaxDepth, Light)-1:0]   exit_time_o [3],
-  output face_e                                  exit_face_o,
+  output step_t step_o,
+  output logic leaves_cell_o,
+  output logic [key_bits(MaxDepth, Light)-1:0] exit_time_o[3],
+  output face_e exit_face_o,
   // Stage 9: whether the slot's ray starts at the root; the axes on which the corner gets the next size.
-  input  logic                                   restarts_i,
-  input  logic [2:0]                             set_i,
+  input logic restarts_i,
+  input logic [2:0] set_i,
   // Stage 10.
-  output logic [MaxDepth-1:0]                    size10_o,
+  output logic [MaxDepth-1:0] size10_o,
   // Stage 11; octant in the mirrored frame.
-  output logic [MaxDepth-1:0]                    corner11_o  [3],
-  output logic [MaxDepth-1:0]                    size11_o,
-  output logic [2:0]                             octant11_o
+  output logic [MaxDepth-1:0] corner11_o[3],
+  output logic [MaxDepth-1:0] size11_o,
+  output logic [2:0] octant11_o
 );
   localparam int unsigned KeyBits = key_bits(MaxDepth, Light);
 
   // 6 compare. To leave: is x before y, y before z, z before x; else: is the middle plane before the key, on a dead
   // axis before the start. Equal times go by axis: x is before y, y before z, and x before z.
-  logic [ KeyBits-1:0] other     [3];
-  logic [   KeyBits:0] difference[3];
-  logic [         2:0] first;  // Of equals.
-  logic [         2:0] before7_q;
-  logic [ KeyBits-1:0] time7_q   [3];
-  face_e               key_face7_q;
-  logic [MaxDepth-1:0] corner7_q [3], size7_q;
-  logic [         2:0] dead7_q;
-  action_e             action7_q;
+  logic [KeyBits-1:0] other[3];
+  logic [KeyBits:0] difference[3];
+  logic [2:0] first;  // Of equals.
+  logic [2:0] before7_q;
+  logic [KeyBits-1:0] time7_q[3];
+  face_e key_face7_q;
+  logic [MaxDepth-1:0] corner7_q[3], size7_q;
+  logic [2:0] dead7_q;
+  action_e action7_q;
 
   always_comb begin
     for (int unsigned a = 0; a < 3; a++) begin
@@ -90,14 +90,14 @@ module voxrt_next_cell
   end
 
   // 7 exit.
-  logic                x_before_y, y_before_z, x_before_z, descends7;
-  logic [         2:0] exit;  // One-hot.
-  face_e               exit_face, exit_face8_q, key_face8_q;
-  logic [ KeyBits-1:0] time8_q  [3];
+  logic x_before_y, y_before_z, x_before_z, descends7;
+  logic [2:0] exit;  // One-hot.
+  face_e exit_face, exit_face8_q, key_face8_q;
+  logic [KeyBits-1:0] time8_q[3];
   logic [MaxDepth-1:0] corner8_q[3], size8_q, coordinate8_q;
-  logic [         2:0] set8_q;
-  logic                dead8_q, descends8_q;
-  action_e             action8_q;
+  logic [2:0] set8_q;
+  logic dead8_q, descends8_q;
+  action_e action8_q;
 
   assign x_before_y = !dead7_q[0] && (dead7_q[1] || before7_q[0]);
   assign y_before_z = !dead7_q[1] && (dead7_q[2] || before7_q[1]);
@@ -126,10 +126,10 @@ module voxrt_next_cell
 
   // 8 add.
   logic [MaxDepth-1:0] sum, sum9_q, coordinate9_q, inner_size9_q, corner9_q[3];
-  logic [ KeyBits-1:0] time9_q[3];
-  logic [         2:0] set9_q;
-  logic                done, leaves_world, leaves_cell9_q, done9_q, continues9_q;
-  face_e               exit_face9_q, key_face9_q;
+  logic [KeyBits-1:0] time9_q[3];
+  logic [2:0] set9_q;
+  logic done, leaves_world, leaves_cell9_q, done9_q, continues9_q;
+  face_e exit_face9_q, key_face9_q;
 
   assign {leaves_world, sum} = {1'b0, coordinate8_q} + (action8_q == Leave ? {1'b0, size8_q} : '0);
   assign done = leaves_world || action8_q == Finish || (action8_q == Leave && dead8_q);
@@ -170,7 +170,7 @@ module voxrt_next_cell
 
   // 9 schedule.
   logic [MaxDepth-1:0] corner10_q[3], size10_q, cleared10_q;
-  logic [         2:0] set10_q;
+  logic [2:0] set10_q;
 
   always_ff @(posedge clk_i) begin
     size10_q    <= restarts_i ? top_size_i : inner_size9_q | (sum9_q & ~coordinate9_q);
@@ -184,7 +184,7 @@ module voxrt_next_cell
 
   // 10 corner.
   logic [MaxDepth-1:0] corner11_q[3], size11_q;
-  logic [         2:0] octant11_q;
+  logic [2:0] octant11_q;
 
   always_ff @(posedge clk_i) begin
     for (int unsigned a = 0; a < 3; a++) begin

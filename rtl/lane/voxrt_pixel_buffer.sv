@@ -26,12 +26,12 @@ module voxrt_pixel_buffer #(
   input  logic                   lit_i,
   // Store its pixel, once, no later than that.
   input  logic                   store_i,
-  input  logic [Width-1:0]       pixel_i,
+  input  logic [      Width-1:0] pixel_i,
   // Pixels in order of allocation.
   output logic                   valid_o,
   input  logic                   ready_i,
   output logic                   lit_o,
-  output logic [Width-1:0]       pixel_o
+  output logic [      Width-1:0] pixel_o
 );
   if (Width < 1) begin : gen_bad_width
     $error("voxrt_pixel_buffer: Width must be 1 bit or more");
@@ -47,9 +47,9 @@ module voxrt_pixel_buffer #(
   // All entries are cleared to phase 0; pixels start with phase 1.
   localparam logic [TagBits-1:0] First = {1'b1, IndexBits'(0)};
 
-  logic [TagBits-1:0]   allocate_q, fetch_q, read_q, free;
-  logic                 ready_q, clearing_q, fetches, valid1_q, valid2_q, phase2, complete, early, pops, fifo_ready;
-  logic [2:0]           waiting_q;  // In the FIFO.
+  logic [TagBits-1:0] allocate_q, fetch_q, read_q, free;
+  logic ready_q, clearing_q, fetches, valid1_q, valid2_q, phase2, complete, early, pops, fifo_ready;
+  logic [2:0] waiting_q;  // In the FIFO.
   logic [IndexBits-1:0] write_index;
 
   // One clock late: an entry may have been allocated since, so the last free one is not given away.
@@ -96,10 +96,10 @@ module voxrt_pixel_buffer #(
     } mark_t;
 
     (* ram_style = "block" *)
-    mark_t            mark_q[Depth];
+    mark_t mark_q[Depth];
     (* ram_style = "block" *)
     logic [Width-1:0] pixel_q[Depth];
-    mark_t            mark1_q, mark2_q;
+    mark_t mark1_q, mark2_q;
     logic [Width-1:0] pixel1_q, pixel2_q;
 
     always_ff @(posedge clk_i) begin
@@ -135,7 +135,7 @@ module voxrt_pixel_buffer #(
     (* ram_style = "block" *)
     entry_t entry_q[Depth];
     entry_t entry1_q, entry2_q;
-    logic   unused_store;
+    logic unused_store;
 
     always_ff @(posedge clk_i) begin
       if (complete_i || clearing_q) entry_q[write_index] <= '{phase: !clearing_q && tag_i[IndexBits], pixel: pixel_i};

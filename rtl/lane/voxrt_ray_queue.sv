@@ -25,9 +25,9 @@ module voxrt_ray_queue #(
 
   localparam int unsigned IndexBits = $clog2(Depth);
 
-  logic [Width-1:0]   data_q [2*Depth];
+  logic [Width-1:0] data_q[2*Depth];
   logic [IndexBits:0] write_q[2], read_q[2];
-  logic [1:0]         filled;
+  logic [1:0] filled;
 
   always_comb for (int unsigned i = 0; i < 2; i++) filled[i] = write_q[i] != read_q[i];
 

@@ -8,20 +8,20 @@ module voxrt_reflect
 #(
   parameter int unsigned Slots = 12  // Rays in the ring of the lane, as lane_slots has it: 12 .. 15.
 ) (
-  input  logic                               clk_i,
+  input  logic                                clk_i,
   // Held during a frame; 0: no material is a mirror.
-  input  logic            [  BounceBits-1:0] bounces_i,
-  input  material_write_t                    material_write_i,
+  input  logic            [   BounceBits-1:0] bounces_i,
+  input  material_write_t                     material_write_i,
   // Stage 3 of the lane: the material of the word read. Stage 7: its slot.
-  input  material_t                          material_i,
+  input  material_t                           material_i,
   input  logic            [$clog2(Slots)-1:0] slot7_i,
   // Stage 9: the ray of the slot hits the material, in a face; or a new ray is issued to the slot.
   input  logic            [$clog2(Slots)-1:0] slot9_i,
-  input  logic                               hit_i,
-  input  logic                               issues_i,
-  output logic                               reflects_o,        // The ray is reflected.
-  output logic                               ends_o,            // It was reflected often enough: it shows mirrors_o.
-  output mirrors_t                           mirrors_o
+  input  logic                                hit_i,
+  input  logic                                issues_i,
+  output logic                                reflects_o,        // The ray is reflected.
+  output logic                                ends_o,            // It was reflected often enough: it shows mirrors_o.
+  output mirrors_t                            mirrors_o
 );
   if (Slots < 12 || Slots > 15) begin : gen_bad_slots
     $error("voxrt_reflect: Slots must be 12 to 15");
@@ -29,8 +29,8 @@ module voxrt_reflect
 
   material_entry_t table_q[256];
   material_entry_t entry4_q, entry5_q, entry6_q, entry7_q;
-  mirrors_t        mirrors_q[Slots], mirrors7, mirrors8_q, mirrors9_q;
-  logic            mirror8_q, mirror9_q, last9_q;
+  mirrors_t mirrors_q[Slots], mirrors7, mirrors8_q, mirrors9_q;
+  logic mirror8_q, mirror9_q, last9_q;
 
   assign mirrors7 = mirrors_q[slot7_i];
 
@@ -42,9 +42,9 @@ module voxrt_reflect
     entry7_q          <= entry6_q;
     mirror8_q         <= entry7_q.mirror && bounces_i != '0;
     mirrors8_q.count  <= mirrors7.count + 1'b1;
-    mirrors8_q.sum[0] <= mirrors7.sum[0] + ColourSumBits'(entry7_q.colour.red);
-    mirrors8_q.sum[1] <= mirrors7.sum[1] + ColourSumBits'(entry7_q.colour.green);
-    mirrors8_q.sum[2] <= mirrors7.sum[2] + ColourSumBits'(entry7_q.colour.blue);
+    mirrors8_q.total[0] <= mirrors7.total[0] + ColourSumBits'(entry7_q.colour.red);
+    mirrors8_q.total[1] <= mirrors7.total[1] + ColourSumBits'(entry7_q.colour.green);
+    mirrors8_q.total[2] <= mirrors7.total[2] + ColourSumBits'(entry7_q.colour.blue);
     mirror9_q         <= mirror8_q;
     last9_q           <= mirrors8_q.count[BounceBits-1:0] == bounces_i + 1'b1;
     mirrors9_q        <= mirrors8_q;

@@ -19,46 +19,46 @@ module voxrt_slot_scheduler
   import voxrt_pkg::*;
 #(
   parameter int unsigned MaxDepth = 10,
-  parameter int unsigned Slots    = 12,  // Rays in the ring of the lane, as lane_slots has it: 12 .. 15.
+  parameter int unsigned Slots    = 12,    // Rays in the ring of the lane, as lane_slots has it: 12 .. 15.
   parameter bit          Light    = 1'b0,
   parameter bit          Mirrors  = 1'b0
 ) (
-  input  logic                                            clk_i,
-  input  logic                                            rst_ni,
+  input  logic                                                       clk_i,
+  input  logic                                                       rst_ni,
   // As voxrt_lane has them.
-  input  logic            [MaxDepth:0]                    side_i,
-  input  shading_t                                        shading_i,
-  input  light_planes_t                                   light_planes_i,
-  input  material_write_t                                 material_write_i,
+  input  logic            [                              MaxDepth:0] side_i,
+  input  shading_t                                                   shading_i,
+  input  light_planes_t                                              light_planes_i,
+  input  material_write_t                                            material_write_i,
   // Which slots are in the stages of the lane, and what their rays are.
-  input  logic            [$clog2(Slots)-1:0]             slot0_i,
-  input  logic            [$clog2(Slots)-1:0]             slot_i           [1:9],
-  output ray_modes_t                                      modes_o,
+  input  logic            [                       $clog2(Slots)-1:0] slot0_i,
+  input  logic            [                       $clog2(Slots)-1:0] slot_i           [1:9],
+  output ray_modes_t                                                 modes_o,
   // Stages 3 and 8.
-  input  material_t                                       material3_i,
-  input  logic            [MaxDepth-1:0]                  corner8_i        [3],
-  input  face_e                                           key_face8_i,
+  input  material_t                                                  material3_i,
+  input  logic            [                            MaxDepth-1:0] corner8_i        [  3],
+  input  face_e                                                      key_face8_i,
   // Stage 9: the ray of the slot, the ray that waits, and what becomes of them.
-  input  step_t                                           step_i,
-  input  logic                                            ray_valid_i,
-  output logic                                            ray_ready_o,
-  input  ray_t                                            ray_i,
-  output decision_t                                       decision_o,
+  input  step_t                                                      step_i,
+  input  logic                                                       ray_valid_i,
+  output logic                                                       ray_ready_o,
+  input  ray_t                                                       ray_i,
+  output decision_t                                                  decision_o,
   // Reorder buffer, as voxrt_lane says.
-  output logic                                            allocate_o,
-  input  logic                                            allocate_ready_i,
-  input  logic            [TagBits-1:0]                   allocate_tag_i,
-  output result_t                                         result_o,
-  output logic [pixel_bits(MaxDepth, Light, Mirrors)-1:0] result_pixel_o,
+  output logic                                                       allocate_o,
+  input  logic                                                       allocate_ready_i,
+  input  logic            [                             TagBits-1:0] allocate_tag_i,
+  output result_t                                                    result_o,
+  output logic            [pixel_bits(MaxDepth, Light, Mirrors)-1:0] result_pixel_o,
   // voxrt_hit_point: whether it has a place for the ray at stage 9; the ray is taken. Hit points; voxrt_light's credit.
-  input  logic                                            holds_i,
-  output logic                                            takes_o,
-  output hit_point_t                                      hit_o,
-  input  logic                                            point_valid_i,
-  output logic                                            point_ready_o,
-  input  hit_point_t                                      point_i,
-  input  material_t                                       point_material_i,
-  input  logic                                            hit_point_ready_i
+  input  logic                                                       holds_i,
+  output logic                                                       takes_o,
+  output hit_point_t                                                 hit_o,
+  input  logic                                                       point_valid_i,
+  output logic                                                       point_ready_o,
+  input  hit_point_t                                                 point_i,
+  input  material_t                                                  point_material_i,
+  input  logic                                                       hit_point_ready_i
 );
   if (Slots < 12 || Slots > 15) begin : gen_bad_slots
     $error("voxrt_slot_scheduler: Slots must be 12 to 15");
@@ -68,14 +68,14 @@ module voxrt_slot_scheduler
   localparam int unsigned DetailBits = detail_bits(MaxDepth, Light, Mirrors);
 
   logic [TagBits-1:0] tag_q[Slots];
-  face_e              face;  // FaceNone without material.
-  logic               hits_face, reflects, escapes, shows_mean, is_lightable, asks, takes, retires;
-  logic               shadow9, backface, stores_point;
-  logic               keeps, issues, bypasses, allocatable;
-  logic [2:0]         set;
-  pixel_t             pixel;
-  shade_e             shade;
-  mirrors_t           mirrors;
+  face_e face;  // FaceNone without material.
+  logic hits_face, reflects, escapes, shows_mean, is_lightable, asks, takes, retires;
+  logic shadow9, backface, stores_point;
+  logic keeps, issues, bypasses, allocatable;
+  logic [2:0] set;
+  pixel_t pixel;
+  shade_e shade;
+  mirrors_t mirrors;
 
   assign face         = step_i.material == '0 ? FaceNone : step_i.key_face;
   assign hits_face    = step_i.done && face != FaceNone && !shadow9;
@@ -127,9 +127,12 @@ module voxrt_slot_scheduler
     always_comb begin
       payload = (DetailBits - 2)'(step_i.mirrored);
       if (Light) begin
-        payload = (DetailBits - 2)'({stores_point ? point_i.mirrored : step_i.mirrored,
-                                     point_i.point[2][PointBits-1:0],
-                                     point_i.point[1][PointBits-1:0], point_i.point[0][PointBits-1:0]});
+        payload = (DetailBits - 2)'({
+          stores_point ? point_i.mirrored : step_i.mirrored,
+          point_i.point[2][PointBits-1:0],
+          point_i.point[1][PointBits-1:0],
+          point_i.point[0][PointBits-1:0]
+        });
       end
       if (Mirrors && shows_mean && !stores_point) payload = (DetailBits - 2)'(mirrors);
     end
@@ -143,10 +146,10 @@ module voxrt_slot_scheduler
 
   // The mirror image of a ray.
   if (Mirrors) begin : gen_mirrors
-    logic                       reflects_here, outermost_q;
+    logic reflects_here, outermost_q;
     logic signed [MaxDepth+1:0] shift_q;
-    logic        [MaxDepth-1:0] plane8;
-    logic                       unused_slots;
+    logic [MaxDepth-1:0] plane8;
+    logic unused_slots;
 
     assign unused_slots = &{slot_i[1], slot_i[2], slot_i[3], slot_i[4], slot_i[5], slot_i[6], slot_i[8]};
 
@@ -208,10 +211,10 @@ module voxrt_slot_scheduler
 
   // Hit points, and the results of shadow rays.
   if (Light) begin : gen_light
-    logic      waits_q   [Slots];
-    logic      shadow_q  [Slots];
+    logic waits_q[Slots];
+    logic shadow_q[Slots];
     material_t material_q[Slots];  // That a ray has hit that waits.
-    logic      shadow3_q, occluded;
+    logic shadow3_q, occluded;
 
     assign modes_o.waits0    = waits_q[slot0_i];
     assign modes_o.waits2    = waits_q[slot_i[2]];

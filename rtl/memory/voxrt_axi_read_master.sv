@@ -11,22 +11,22 @@ module voxrt_axi_read_master
   parameter int unsigned UnderWay    = 8,  // Bursts: a power of two, 2 .. 256.
   parameter int unsigned TimeoutBits = 16  // The bus must answer within 2**TimeoutBits clocks: 1 .. 32.
 ) (
-  input  logic               clk_i,
-  input  logic               rst_ni,           // The bus's reset.
-  input  logic               clear_i,          // Forget all requests; the bus goes on.
-  input  logic               recover_i,        // Use the bus again. Not while a request waits.
-  input  logic               fail_i,           // Fail as after an error of the bus.
-  input  logic               request_valid_i,
-  output logic               request_ready_o,
-  input  logic        [31:0] request_address_i,
-  output logic               answer_valid_o,
-  input  logic               answer_ready_i,
-  output logic               answer_failed_o,
-  output logic       [255:0] answer_line_o,
-  output logic               bus_error_o,      // For one clock each.
-  output logic               bus_timeout_o,
-  output axi_read_request_t  axi_o,
-  input  axi_read_response_t axi_i
+  input  logic                       clk_i,
+  input  logic                       rst_ni,             // The bus's reset.
+  input  logic                       clear_i,            // Forget all requests; the bus goes on.
+  input  logic                       recover_i,          // Use the bus again. Not while a request waits.
+  input  logic                       fail_i,             // Fail as after an error of the bus.
+  input  logic                       request_valid_i,
+  output logic                       request_ready_o,
+  input  logic               [ 31:0] request_address_i,
+  output logic                       answer_valid_o,
+  input  logic                       answer_ready_i,
+  output logic                       answer_failed_o,
+  output logic               [255:0] answer_line_o,
+  output logic                       bus_error_o,        // For one clock each.
+  output logic                       bus_timeout_o,
+  output axi_read_request_t          axi_o,
+  input  axi_read_response_t         axi_i
 );
   if (UnderWay < 2 || UnderWay > 256 || 2 ** $clog2(UnderWay) != UnderWay) begin : gen_bad_under_way
     $error("voxrt_axi_read_master: UnderWay must be a power of two, 2 to 256");
@@ -38,14 +38,14 @@ module voxrt_axi_read_master
   localparam int unsigned CountBits = $clog2(UnderWay) + 1;
   localparam logic [CountBits-1:0] One = CountBits'(1);
 
-  logic                   failed_q, fails, arvalid_q, line_valid_q;
-  logic [           31:0] araddr_q;
-  logic [          255:0] line_q;
-  logic [            1:0] beat_q;
+  logic failed_q, fails, arvalid_q, line_valid_q;
+  logic [31:0] araddr_q;
+  logic [255:0] line_q;
+  logic [1:0] beat_q;
   logic [TimeoutBits-1:0] waited_q;
   // Requests to be answered; bursts on the bus; those of them, the oldest, that are to be dropped.
-  logic [  CountBits-1:0] owed_q, owed, bursts_q, bursts, dropped_q;
-  logic                   accepts, sends, answers, receives, ends, keeps;
+  logic [CountBits-1:0] owed_q, owed, bursts_q, bursts, dropped_q;
+  logic accepts, sends, answers, receives, ends, keeps;
 
   assign request_ready_o = failed_q ? owed_q != CountBits'(UnderWay) :
       (!arvalid_q || axi_i.arready) && bursts_q != CountBits'(UnderWay) && owed_q != CountBits'(UnderWay);

@@ -20,17 +20,17 @@ module voxrt_banked_memory
   parameter int unsigned BlockBits = 12,
   parameter bit          Lod       = 1'b0
 ) (
-  input  logic                             clk_i,
-  input  logic                             rst_ni,
-  input  logic                             access_i,
-  input  logic                             access_write_i,
-  input  logic [BlockBits+2:0]             access_address_i,
+  input  logic                                  clk_i,
+  input  logic                                  rst_ni,
+  input  logic                                  access_i,
+  input  logic                                  access_write_i,
+  input  logic [                 BlockBits+2:0] access_address_i,
   input  logic [payload_bits(BlockBits, Lod):0] access_word_i,
   output logic [payload_bits(BlockBits, Lod):0] access_word_o,            // Five clocks later.
-  input  logic [Lanes-1:0]                 read_i,
-  input  logic [BlockBits+2:0]             address_i        [Lanes],
-  output logic [Lanes-1:0]                 ack_o,
-  output logic [payload_bits(BlockBits, Lod):0] word_o           [Lanes]
+  input  logic [                     Lanes-1:0] read_i,
+  input  logic [                 BlockBits+2:0] address_i       [Lanes],
+  output logic [                     Lanes-1:0] ack_o,
+  output logic [payload_bits(BlockBits, Lod):0] word_o          [Lanes]
 );
   localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
   localparam int unsigned AddressBits = BlockBits + 3;
@@ -44,11 +44,11 @@ module voxrt_banked_memory
   localparam int unsigned TopRowBits = TopBlockBits + 3 - BankBits;
 
   // Bank and row in it of each lane's request, clock by clock.
-  logic [BankBits-1:0]    bank  [Lanes];
-  logic [BankBits-1:0]    bank_q[1:4] [Lanes];
-  logic [BankRowBits-1:0] row   [Lanes];
-  logic [BankRowBits-1:0] row_q [1:2] [Lanes];
-  logic [Lanes-1:0]       in_top, in_top_q[1:2], asks;
+  logic [BankBits-1:0] bank[Lanes];
+  logic [BankBits-1:0] bank_q[1:4][Lanes];
+  logic [BankRowBits-1:0] row[Lanes];
+  logic [BankRowBits-1:0] row_q[1:2][Lanes];
+  logic [Lanes-1:0] in_top, in_top_q[1:2], asks;
 
   always_comb begin
     for (int unsigned i = 0; i < Lanes; i++) begin
@@ -71,11 +71,11 @@ module voxrt_banked_memory
   end
 
   // The access port, kept in step.
-  logic                   access_q      [1:2];
-  logic                   access_write_q[1:2];
-  logic [BankRowBits-1:0] access_row_q  [1:2];
-  logic [   BankBits-1:0] access_bank_q [1:4];
-  logic [  PayloadBits:0] access_word_q [1:2];
+  logic access_q[1:2];
+  logic access_write_q[1:2];
+  logic [BankRowBits-1:0] access_row_q[1:2];
+  logic [BankBits-1:0] access_bank_q[1:4];
+  logic [PayloadBits:0] access_word_q[1:2];
 
   always_ff @(posedge clk_i) begin
     // No reset: a reset of the core drops rays, and no word that the processor writes or reads.
@@ -136,7 +136,7 @@ module voxrt_banked_memory
   endfunction
 
   for (genvar k = 0; k < Banks; k++) begin : gen_bank
-    logic                   accessed, accessed2_q;
+    logic accessed, accessed2_q;
     logic [BankRowBits-1:0] a_row2_q, b_row2_q;
 
     assign accessed = access_q[1] && access_bank_q[1] == BankBits'(k);
@@ -165,9 +165,9 @@ module voxrt_banked_memory
 
   // 2 the top: the row of a word is made of its row in its bank and the bank.
   logic [TopBlockBits+2:0] top_address[Lanes];
-  logic [       Lanes-1:0] from_top;
-  logic [   PayloadBits:0] top_word[Lanes], unused_top_access;
-  logic                    writes_top;
+  logic [Lanes-1:0] from_top;
+  logic [PayloadBits:0] top_word[Lanes], unused_top_access;
+  logic writes_top;
 
   assign writes_top = access_q[2] && access_write_q[2] && access_row_q[2][BankRowBits-1:TopRowBits] == '0;
 
@@ -196,7 +196,7 @@ module voxrt_banked_memory
   );
 
   // 4 to the lanes.
-  logic [Lanes-1:0]     from_a_q[2:4], from_b_q[2:4], ack_q;
+  logic [Lanes-1:0] from_a_q[2:4], from_b_q[2:4], ack_q;
   logic [PayloadBits:0] word_q[Lanes], access_out_q;
 
   always_ff @(posedge clk_i) begin

@@ -13,29 +13,29 @@ module voxrt_cached_memory
 #(
   parameter int unsigned Lanes       = 1,
   parameter int unsigned BlockBits   = 12,
-  parameter int unsigned L1SetBits   = 5,  // Sets of four lines.
+  parameter int unsigned L1SetBits   = 5,     // Sets of four lines.
   parameter int unsigned L2SetBits   = 9,
   parameter bit          Lod         = 1'b0,
-  parameter int unsigned TimeoutBits = 16  // The bus must answer within 2**TimeoutBits clocks: 1 .. 32.
+  parameter int unsigned TimeoutBits = 16     // The bus must answer within 2**TimeoutBits clocks: 1 .. 32.
 ) (
-  input  logic                             clk_i,
-  input  logic                             rst_ni,
-  input  logic                             bus_rst_ni,             // A reset of the core does not reset the bus.
+  input logic clk_i,
+  input logic rst_ni,
+  input logic bus_rst_ni,  // A reset of the core does not reset the bus.
   // Frames.
-  input  logic                             start_i,
-  output logic                             ready_o,
-  input  logic                             flush_i,
-  input  logic [31:0]                      base_i,                 // As voxrt_line_reader has them.
-  input  logic                             lod_words_i,
+  input logic start_i,
+  output logic ready_o,
+  input logic flush_i,
+  input logic [31:0] base_i,  // As voxrt_line_reader has them.
+  input logic lod_words_i,
   // Lanes.
-  input  logic [Lanes-1:0]                 read_i,
-  input  logic [BlockBits+3:0]             address_i        [Lanes],
-  output logic [Lanes-1:0]                 ack_o,
-  output logic [payload_bits(BlockBits, Lod):0] word_o      [Lanes],
+  input logic [Lanes-1:0] read_i,
+  input logic [BlockBits+3:0] address_i[Lanes],
+  output logic [Lanes-1:0] ack_o,
+  output logic [payload_bits(BlockBits, Lod):0] word_o[Lanes],
   // External memory.
-  output axi_read_request_t                axi_o            [BusPorts],
-  input  axi_read_response_t               axi_i            [BusPorts],
-  output memory_events_t                   events_o
+  output axi_read_request_t axi_o[BusPorts],
+  input axi_read_response_t axi_i[BusPorts],
+  output memory_events_t events_o
 );
   if (TimeoutBits < 1 || TimeoutBits > 32) begin : gen_bad_timeout_bits
     $error("voxrt_cached_memory: TimeoutBits must be 1 to 32 bits");
@@ -44,10 +44,10 @@ module voxrt_cached_memory
   localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
 
   // Frames.
-  logic             waits_q, flushing_q, flush_needed_q, clears;
+  logic waits_q, flushing_q, flush_needed_q, clears;
   logic [Lanes-1:0] l1_idle;
-  logic             l2_idle, idle_q;
-  logic             bus_error, bus_timeout;
+  logic l2_idle, idle_q;
+  logic bus_error, bus_timeout;
 
   // No lane reads between start_i and ready_o: caches that are idle stay so, until they are emptied.
   assign clears  = waits_q && idle_q && flush_needed_q && !flushing_q;
@@ -69,18 +69,18 @@ module voxrt_cached_memory
   end
 
   // Caches.
-  logic [          Lanes-1:0]                 request_valid, request_ready, answer_valid;
-  logic [        BlockBits:0]                 request_line[Lanes], answer_line[2], fetch_line;
-  logic [                7:0][PayloadBits:0] answer_words[2], fill_words;
-  logic                                       fetch_valid, fetch_ready, fill_valid, fill_ready;
+  logic [Lanes-1:0] request_valid, request_ready, answer_valid;
+  logic [BlockBits:0] request_line[Lanes], answer_line[2], fetch_line;
+  logic [7:0][PayloadBits:0] answer_words[2], fill_words;
+  logic fetch_valid, fetch_ready, fill_valid, fill_ready;
 
   // Lane 4 g + p and, if there is one, lane 4 g + p + 2 are of queue 2 g + p; pipe p answers them.
   localparam int unsigned Queues = Lanes < 3 ? Lanes : 2 * (Lanes / 4) + (Lanes % 4 < 2 ? Lanes % 4 : 2);
 
-  logic [         1:0]                fill_lanes  [Queues];
-  logic [L1SetBits-1:0]               fill_set    [Queues];
-  logic [         1:0]                fill_quarter[Queues];
-  logic [         1:0][PayloadBits:0] fill_pair   [Queues];
+  logic [1:0] fill_lanes[Queues];
+  logic [L1SetBits-1:0] fill_set[Queues];
+  logic [1:0] fill_quarter[Queues];
+  logic [1:0][PayloadBits:0] fill_pair[Queues];
 
   for (genvar q = 0; q < Queues; q++) begin : gen_queue
     localparam int unsigned First = 4 * (q / 2) + q % 2;
@@ -154,7 +154,7 @@ module voxrt_cached_memory
   );
 
   // The list of misses and the ports of the bus are far apart: neither waits for the other within a clock.
-  logic               next_valid, next_ready;
+  logic next_valid, next_ready;
   logic [BlockBits:0] next_line;
 
   voxrt_fifo #(

@@ -19,31 +19,31 @@
 module voxrt_l1_cache
   import voxrt_pkg::*;
 #(
-  parameter int unsigned BlockBits  = 12,
-  parameter int unsigned SetBits    = 5,  // 2**SetBits sets: 1 or more, less than BlockBits.
-  parameter int unsigned Ways       = 4,  // Lines of a set: 1, 2 or 4.
+  parameter int unsigned BlockBits = 12,
+  parameter int unsigned SetBits = 5,  // 2**SetBits sets: 1 or more, less than BlockBits.
+  parameter int unsigned Ways = 4,  // Lines of a set: 1, 2 or 4.
   // Until a ray comes round: 2 clocks or more.
   parameter int unsigned TurnClocks = lane_slots(memory_clocks(int'(CachedForm))),
-  parameter bit          Lod        = 1'b0
+  parameter bit Lod = 1'b0
 ) (
-  input  logic                                  clk_i,
-  input  logic                                  rst_ni,
-  input  logic                                  clear_i,          // Drop all lines; only when idle_o.
-  output logic                                  idle_o,           // No line is asked for.
+  input logic clk_i,
+  input logic rst_ni,
+  input logic clear_i,  // Drop all lines; only when idle_o.
+  output logic idle_o,  // No line is asked for.
   // Lane.
-  input  logic                                  read_i,
-  input  logic                  [BlockBits+3:0] address_i,        // {line, octant}
-  output logic                                  ack_o,
-  output logic      [payload_bits(BlockBits, Lod):0] word_o,
+  input logic read_i,
+  input logic [BlockBits+3:0] address_i,  // {line, octant}
+  output logic ack_o,
+  output logic [payload_bits(BlockBits, Lod):0] word_o,
   // Lines: requests, and answers in any order, each for the set of the one line that it waits for, two words per clock:
   // see voxrt_line_queue.
-  output logic                                  request_valid_o,
-  input  logic                                  request_ready_i,
-  output logic                    [BlockBits:0] request_line_o,
-  input  logic                                  answer_valid_i,
-  input  logic                    [SetBits-1:0] answer_set_i,
-  input  logic                            [1:0] answer_quarter_i,
-  input  logic [1:0][payload_bits(BlockBits, Lod):0] answer_pair_i
+  output logic request_valid_o,
+  input logic request_ready_i,
+  output logic [BlockBits:0] request_line_o,
+  input logic answer_valid_i,
+  input logic [SetBits-1:0] answer_set_i,
+  input logic [1:0] answer_quarter_i,
+  input logic [1:0][payload_bits(BlockBits, Lod):0] answer_pair_i
 );
   if (SetBits < 1 || SetBits >= BlockBits) begin : gen_bad_set_bits
     $error("voxrt_l1_cache: SetBits must be 1 bit or more, and less than BlockBits");
@@ -65,8 +65,8 @@ module voxrt_l1_cache
   localparam int unsigned CountBits = $clog2(Outstanding) + 1;
 
   // States of the sets: see above.
-  logic               asked_set_q[Sets], come_set_q[Sets], free_set_q[Sets];
-  logic [WayBits-1:0] new_way_q  [Sets];  // Where the line goes that the set has asked for last.
+  logic asked_set_q[Sets], come_set_q[Sets], free_set_q[Sets];
+  logic [WayBits-1:0] new_way_q[Sets];  // Where the line goes that the set has asked for last.
 
   // Which ways were used last, by set: bit b (b - 1) / 2 + a says that a was used after b, for ways a < b.
   localparam int unsigned OrderBits = Ways > 1 ? Ways * (Ways - 1) / 2 : 1;
@@ -75,8 +75,8 @@ module voxrt_l1_cache
   // After a reset and when lines are dropped, all sets are written, for a turn at least: then nothing is under way.
   localparam int unsigned WalkBits = $clog2(TurnClocks + 1) > SetBits ? $clog2(TurnClocks + 1) : SetBits;
   logic [WalkBits-1:0] walk_q;
-  logic [ SetBits-1:0] walk_set;
-  logic                walks_q;
+  logic [SetBits-1:0] walk_set;
+  logic walks_q;
 
   assign walk_set = walk_q[SetBits-1:0];
 
@@ -90,19 +90,19 @@ module voxrt_l1_cache
   end
 
   // 1 tags.
-  logic                read1_q;
+  logic read1_q;
   logic [LineBits-1:0] line1_q;
-  logic [         2:0] octant1_q;
-  logic [ SetBits-1:0] set1;
-  logic [    Ways-1:0] same1;
+  logic [2:0] octant1_q;
+  logic [SetBits-1:0] set1;
+  logic [Ways-1:0] same1;
 
   assign set1 = line1_q[SetBits-1:0];
 
   // What becomes of the tags.
-  logic                allocates;
-  logic [ SetBits-1:0] new_row;  // That is written.
-  logic [  TagBits1:0] new_tag;  // A bit that says that the way is not empty, and the line's upper bits.
-  logic [ WayBits-1:0] victim;
+  logic allocates;
+  logic [SetBits-1:0] new_row;  // That is written.
+  logic [TagBits1:0] new_tag;  // A bit that says that the way is not empty, and the line's upper bits.
+  logic [WayBits-1:0] victim;
 
   assign new_row = walks_q ? walk_set : set1;
   assign new_tag = walks_q ? '0 : {1'b1, line1_q[LineBits-1:SetBits]};
@@ -115,9 +115,9 @@ module voxrt_l1_cache
     assign same1[w] = tag_q[set1] == {1'b1, line1_q[LineBits-1:SetBits]};
   end
 
-  logic [     Ways-1:0] hit_ways;
-  logic [  WayBits-1:0] hit_way;
-  logic                 pending1, taken1, hit;
+  logic [Ways-1:0] hit_ways;
+  logic [WayBits-1:0] hit_way;
+  logic pending1, taken1, hit;
   logic [CountBits-1:0] outstanding_q;
 
   always_comb begin
@@ -182,8 +182,8 @@ module voxrt_l1_cache
   always_ff @(posedge clk_i) begin
     if (walks_q || hit) order_q[new_row] <= walks_q ? '0 : order;
     if (walks_q || allocates) asked_set_q[new_row] <= !walks_q && !free_set_q[set1];
-    if (walks_q || come.valid) come_set_q[walks_q ? walk_set : come.set] <= !walks_q && come.asked;
-    if (walks_q || turn.valid) free_set_q[walks_q ? walk_set : turn.set] <= !walks_q && turn.asked;
+    if (walks_q || come.valid) come_set_q[walks_q?walk_set : come.set] <= !walks_q && come.asked;
+    if (walks_q || turn.valid) free_set_q[walks_q?walk_set : turn.set] <= !walks_q && turn.asked;
     if (allocates) new_way_q[set1] <= victim;
     outstanding_q <= outstanding_q + CountBits'(allocates) - CountBits'(answer_valid_i && answer_quarter_i == 2'd3);
     if (!rst_ni) outstanding_q <= '0;
@@ -207,13 +207,13 @@ module voxrt_l1_cache
   );
 
   // 2 to 4 data.
-  logic [                4:2] hit_q;
+  logic [4:2] hit_q;
   logic [SetBits+WayBits-1:0] way2_q;
-  logic [                2:0] octant2_q;
-  logic [                1:0] odd_q;       // In stages 4 and 3.
-  logic [ 1:0][WordBits-1:0] pair, unused_pair;
-  logic [      WordBits-1:0] word4, word_q;
-  logic                      ack_q;
+  logic [2:0] octant2_q;
+  logic [1:0] odd_q;  // In stages 4 and 3.
+  logic [1:0][WordBits-1:0] pair, unused_pair;
+  logic [WordBits-1:0] word4, word_q;
+  logic ack_q;
 
   voxrt_block_ram #(
     .Width(2 * WordBits),
@@ -255,8 +255,9 @@ module voxrt_l1_cache
 
   `VOXRT_ASSERT(LineInOneWay, walks_q || !read1_q || $onehot0(same1))
   `VOXRT_ASSERT(QueuesHoldLines, walks_q || outstanding_q <= CountBits'(Outstanding))
-  `VOXRT_ASSERT(LineWasAskedFor, walks_q || !answer_valid_i ||
-                asked_set_q[answer_set_i] != come_set_q[answer_set_i] || answer_quarter_i == 2'd3)
+  `VOXRT_ASSERT(
+      LineWasAskedFor,
+      walks_q || !answer_valid_i || asked_set_q[answer_set_i] != come_set_q[answer_set_i] || answer_quarter_i == 2'd3)
   `VOXRT_ASSERT(SetAsksForOneLine, walks_q || !allocates || asked_set_q[set1] == free_set_q[set1])
   `VOXRT_ASSERT(ClearedWhenIdle, walks_q || !clear_i || idle_o)
 endmodule

@@ -18,28 +18,28 @@ module voxrt_l2_cache
 #(
   parameter int unsigned Lanes     = 16,
   parameter int unsigned BlockBits = 12,
-  parameter int unsigned SetBits   = 9,  // 2**SetBits sets of four lines: 1 or more, less than BlockBits.
+  parameter int unsigned SetBits   = 9,     // 2**SetBits sets of four lines: 1 or more, less than BlockBits.
   parameter bit          Lod       = 1'b0,
-  parameter int unsigned Misses    = 32  // Lines: a power of two, 2 or more.
+  parameter int unsigned Misses    = 32     // Lines: a power of two, 2 or more.
 ) (
-  input  logic                                  clk_i,
-  input  logic                                  rst_ni,
-  input  logic                                  flush_i,            // Drop all lines; only when idle_o.
-  output logic                                  idle_o,
+  input logic clk_i,
+  input logic rst_ni,
+  input logic flush_i,  // Drop all lines; only when idle_o.
+  output logic idle_o,
   // Lanes.
-  input  logic      [Lanes-1:0]                 request_valid_i,
-  output logic      [Lanes-1:0]                 request_ready_o,    // The request is accepted, for one clock.
-  input  logic      [BlockBits:0]               request_line_i   [Lanes],
-  output logic      [Lanes-1:0]                 answer_valid_o,
-  output logic      [BlockBits:0]               answer_line_o    [2],  // By pipe.
-  output logic [7:0][payload_bits(BlockBits, Lod):0] answer_words_o   [2],
+  input logic [Lanes-1:0] request_valid_i,
+  output logic [Lanes-1:0] request_ready_o,  // The request is accepted, for one clock.
+  input logic [BlockBits:0] request_line_i[Lanes],
+  output logic [Lanes-1:0] answer_valid_o,
+  output logic [BlockBits:0] answer_line_o[2],  // By pipe.
+  output logic [7:0][payload_bits(BlockBits, Lod):0] answer_words_o[2],
   // External memory.
-  output logic                                  fetch_valid_o,
-  input  logic                                  fetch_ready_i,
-  output logic      [BlockBits:0]               fetch_line_o,
-  input  logic                                  fill_valid_i,
-  output logic                                  fill_ready_o,
-  input  logic [7:0][payload_bits(BlockBits, Lod):0] fill_words_i
+  output logic fetch_valid_o,
+  input logic fetch_ready_i,
+  output logic [BlockBits:0] fetch_line_o,
+  input logic fill_valid_i,
+  output logic fill_ready_o,
+  input logic [7:0][payload_bits(BlockBits, Lod):0] fill_words_i
 );
   if (SetBits < 1 || SetBits >= BlockBits) begin : gen_bad_set_bits
     $error("voxrt_l2_cache: SetBits must be 1 bit or more, and less than BlockBits");
@@ -57,13 +57,13 @@ module voxrt_l2_cache
   typedef logic [LineBits-1:0] line_t;
 
   // 0 choose. A lane that is looked up waits for the outcome.
-  logic                 walks_q, fills;
-  logic [  SetBits-1:0] walk_q;
-  logic [    Lanes-1:0] looked_up_q, granted, decided;
+  logic walks_q, fills;
+  logic [SetBits-1:0] walk_q;
+  logic [Lanes-1:0] looked_up_q, granted, decided;
   logic [PipeLanes-1:0] wants[Pipes], grant[Pipes], late_q[Pipes];
-  line_t                fill_line;
-  logic                 list_empty;
-  logic [          1:0] fill_way;
+  line_t fill_line;
+  logic list_empty;
+  logic [1:0] fill_way;
 
   assign fills        = fill_valid_i && !walks_q;
   assign fill_ready_o = !walks_q;
@@ -98,12 +98,12 @@ module voxrt_l2_cache
   end
 
   // What goes through the stages.
-  line_t                line_q      [Pipes][1:5];
-  logic [PipeLanes-1:0] lanes_q     [Pipes][1:5];  // One-hot or 0; in stages 4 and 5 those that get the line.
-  logic [          5:1] fill_q;
-  logic [          2:1] walk1_q;
-  line_t                fill_line_q [1:5];
-  logic [          1:0] fill_way_q  [1:3];
+  line_t line_q[Pipes][1:5];
+  logic [PipeLanes-1:0] lanes_q[Pipes][1:5];  // One-hot or 0; in stages 4 and 5 those that get the line.
+  logic [5:1] fill_q;
+  logic [2:1] walk1_q;
+  line_t fill_line_q[1:5];
+  logic [1:0] fill_way_q[1:3];
   logic [LineWidth-1:0] fill_words_q[1:5];
   logic [PipeLanes-1:0] hit_lanes[Pipes], fill_lanes[Pipes];
 
@@ -172,15 +172,15 @@ module voxrt_l2_cache
   end
 
   // 3 hit or miss.
-  logic [Ways-1:0] same [Pipes], empty[Pipes];
-  logic [     1:0] hit_way[Pipes], new_way[Pipes];
+  logic [Ways-1:0] same[Pipes], empty[Pipes];
+  logic [1:0] hit_way[Pipes], new_way[Pipes];
   logic [Pipes-1:0] hit, misses, missed;
-  line_t            line3[Pipes];
+  line_t line3[Pipes];
 
   // Use: bit 0 is the half used last, bits 1 and 2 the way used last of each half. All orders are legal: no reset.
   logic [2:0] used_q[2**SetBits];
   logic [1:0] older_q[Pipes];
-  line_t      line2[Pipes];
+  line_t line2[Pipes];
 
   always_comb for (int unsigned p = 0; p < Pipes; p++) line2[p] = line_q[p][2];
 
@@ -218,9 +218,9 @@ module voxrt_l2_cache
     end
   end
 
-  logic               second_first_q, counts_second, uses_q;
+  logic second_first_q, counts_second, uses_q;
   logic [SetBits-1:0] used_set_q;
-  logic [        1:0] used_way_q;
+  logic [1:0] used_way_q;
 
   function automatic logic [1:0] older_way(logic [2:0] used);
     return {!used[0], used[0] ? !used[1] : !used[2]};
@@ -253,21 +253,21 @@ module voxrt_l2_cache
   ) u_misses (
     .clk_i,
     .rst_ni,
-    .empty_o      (list_empty),
-    .miss_i       (misses),
-    .next_line_i  (line2),
-    .line_i       (line3),
-    .lanes_i      (lanes3),
-    .way_i        (new_way),
-    .accepted_o   (missed),
+    .empty_o     (list_empty),
+    .miss_i      (misses),
+    .next_line_i (line2),
+    .line_i      (line3),
+    .lanes_i     (lanes3),
+    .way_i       (new_way),
+    .accepted_o  (missed),
     .fetch_valid_o,
     .fetch_ready_i,
     .fetch_line_o,
-    .come_i       (fills),
-    .come_line_o  (fill_line),
-    .come_way_o   (fill_way),
-    .free_i       (fill_q[3]),
-    .free_lanes_o (fill_lanes)
+    .come_i      (fills),
+    .come_line_o (fill_line),
+    .come_way_o  (fill_way),
+    .free_i      (fill_q[3]),
+    .free_lanes_o(fill_lanes)
   );
 
   // 3 to 5 data.

@@ -8,15 +8,15 @@ module voxrt_line_queue #(
   parameter int unsigned WordBits = 14,  // Of a word, as lanes read it: 1 or more.
   parameter int unsigned Depth    = 16   // Lines that the lanes ask for at a time, together: a power of two, 2 or more.
 ) (
-  input  logic                            clk_i,
-  input  logic                            rst_ni,
-  input  logic [   Lanes-1:0]             valid_i,    // Which lanes a line comes for.
-  input  logic [ SetBits-1:0]             set_i,
-  input  logic [         7:0][WordBits-1:0] words_i,
-  output logic [   Lanes-1:0]             valid_o,    // For four clocks per line.
-  output logic [ SetBits-1:0]             set_o,
-  output logic [         1:0]             quarter_o,
-  output logic [         1:0][WordBits-1:0] pair_o      // Words 2 * quarter_o and the next.
+  input  logic                             clk_i,
+  input  logic                             rst_ni,
+  input  logic [  Lanes-1:0]               valid_i,    // Which lanes a line comes for.
+  input  logic [SetBits-1:0]               set_i,
+  input  logic [        7:0][WordBits-1:0] words_i,
+  output logic [  Lanes-1:0]               valid_o,    // For four clocks per line.
+  output logic [SetBits-1:0]               set_o,
+  output logic [        1:0]               quarter_o,
+  output logic [        1:0][WordBits-1:0] pair_o      // Words 2 * quarter_o and the next.
 );
   if (Lanes < 1) begin : gen_bad_lanes
     $error("voxrt_line_queue: Lanes must be 1 or more");
@@ -31,10 +31,10 @@ module voxrt_line_queue #(
     $error("voxrt_line_queue: Depth must be a power of two, 2 or more");
   end
 
-  logic                     valid, ready;
-  logic [   Lanes-1:0]      lanes;
+  logic valid, ready;
+  logic [Lanes-1:0] lanes;
   logic [7:0][WordBits-1:0] words;
-  logic [         1:0]      quarter_q;
+  logic [1:0] quarter_q;
 
   voxrt_fifo #(
     .Width(Lanes + SetBits + 8 * WordBits),

@@ -9,24 +9,24 @@ module voxrt_line_reader
 #(
   parameter int unsigned BlockBits   = 12,
   parameter bit          Lod         = 1'b0,
-  parameter int unsigned TimeoutBits = 16  // The bus must answer within 2**TimeoutBits clocks: 1 .. 32.
+  parameter int unsigned TimeoutBits = 16     // The bus must answer within 2**TimeoutBits clocks: 1 .. 32.
 ) (
-  input  logic                                  clk_i,
-  input  logic                                  rst_ni,           // The bus's reset.
-  input  logic                                  clear_i,          // As voxrt_axi_read_master has them.
-  input  logic                                  recover_i,
-  input  logic                           [31:0] base_i,           // A multiple of 32, held during a frame.
-  input  logic                                  lod_words_i,      // Held too; see voxrt_word_encoder.
-  input  logic                                  request_valid_i,
-  output logic                                  request_ready_o,
-  input  logic                    [BlockBits:0] request_line_i,   // Signed.
-  output logic                                  answer_valid_o,
-  input  logic                                  answer_ready_i,
+  input logic clk_i,
+  input logic rst_ni,  // The bus's reset.
+  input logic clear_i,  // As voxrt_axi_read_master has them.
+  input logic recover_i,
+  input logic [31:0] base_i,  // A multiple of 32, held during a frame.
+  input logic lod_words_i,  // Held too; see voxrt_word_encoder.
+  input logic request_valid_i,
+  output logic request_ready_o,
+  input logic [BlockBits:0] request_line_i,  // Signed.
+  output logic answer_valid_o,
+  input logic answer_ready_i,
   output logic [7:0][payload_bits(BlockBits, Lod):0] answer_words_o,
-  output logic                                  bus_error_o,      // For one clock each.
-  output logic                                  bus_timeout_o,
-  output axi_read_request_t                     axi_o           [BusPorts],
-  input  axi_read_response_t                    axi_i           [BusPorts]
+  output logic bus_error_o,  // For one clock each.
+  output logic bus_timeout_o,
+  output axi_read_request_t axi_o[BusPorts],
+  input axi_read_response_t axi_i[BusPorts]
 );
   if (TimeoutBits < 1 || TimeoutBits > 32) begin : gen_bad_timeout_bits
     $error("voxrt_line_reader: TimeoutBits must be 1 to 32 bits");
@@ -36,10 +36,10 @@ module voxrt_line_reader
   localparam int unsigned UnderWay = 16;
 
   logic [BusPorts-1:0] ready, valid, failed, bus_error, bus_timeout;
-  logic [       255:0] line [BusPorts];
-  logic [        31:0] address;
+  logic [255:0] line[BusPorts];
+  logic [31:0] address;
   // The port of the next request, and of the next answer.
-  logic                request_port_q, answer_port_q, fails_q;
+  logic request_port_q, answer_port_q, fails_q;
 
   assign address         = base_i + 32'd32 + {{(26 - BlockBits) {request_line_i[BlockBits]}}, request_line_i, 5'd0};
   assign request_ready_o = ready[request_port_q];

@@ -53,17 +53,17 @@ module voxrt_miss_list #(
   localparam int unsigned IndexBits = $clog2(Entries);
   typedef logic [IndexBits-1:0] index_t;
 
-  logic [  Entries-1:0] valid_q;
-  logic [ LineBits-1:0] line_q    [Entries];  // Compared with all.
-  logic [ LineBits-1:0] fetched_q [Entries];  // The same, for what reads one entry.
-  logic [ LineBits+1:0] coming_q  [Entries];  // And with the way.
-  index_t               tail_q, fetch_q, come_q, free_q, walk_q;
-  logic                 walks_q;
+  logic [Entries-1:0] valid_q;
+  logic [LineBits-1:0] line_q[Entries];  // Compared with all.
+  logic [LineBits-1:0] fetched_q[Entries];  // The same, for what reads one entry.
+  logic [LineBits+1:0] coming_q[Entries];  // And with the way.
+  index_t tail_q, fetch_q, come_q, free_q, walk_q;
+  logic walks_q;
 
   logic [Entries-1:0] same_q[Pipes];
-  index_t             entry[Pipes];  // Joined or entered.
-  logic [  Pipes-1:0] joins, enters;
-  logic               full, second_first_q, enters_second, both_same_q;
+  index_t entry[Pipes];  // Joined or entered.
+  logic [Pipes-1:0] joins, enters;
+  logic full, second_first_q, enters_second, both_same_q;
 
   assign full = valid_q[tail_q] || walks_q;
 
@@ -153,9 +153,9 @@ module voxrt_miss_list #(
 
     always_ff @(posedge clk_i) begin
       if (walks_q || (miss_i[p] && accepted_o[p])) begin
-        joined_q[walks_q ? walk_q : entry[p]] <= walks_q ? '0 : joined_q[entry[p]] ^ lanes_i[p];
+        joined_q[walks_q?walk_q : entry[p]] <= walks_q ? '0 : joined_q[entry[p]] ^ lanes_i[p];
       end
-      if (walks_q || free_i) answered_q[walks_q ? walk_q : free_q] <= walks_q ? '0 : joined_q[free_q];
+      if (walks_q || free_i) answered_q[walks_q?walk_q : free_q] <= walks_q ? '0 : joined_q[free_q];
     end
 
     assign free_lanes_o[p] = joined_q[free_q] ^ answered_q[free_q];

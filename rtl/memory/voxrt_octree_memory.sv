@@ -20,33 +20,33 @@ module voxrt_octree_memory
   // What private copies hold from the beginning, for $readmemh: row a has word 1 + a, as voxrt_word_encoder encodes it.
   parameter string       File       = ""
 ) (
-  input  logic                             clk_i,
-  input  logic                             rst_ni,
+  input logic clk_i,
+  input logic rst_ni,
   // Report dialect or, with lod_words_i, dialect lod; word addresses, any order, one access per clock; what is written beyond the memory is dropped.
-  input  logic                             access_i,
-  input  logic                             access_write_i,
-  input  logic [31:0]                      access_address_i,
-  input  logic [31:0]                      access_word_i,
-  output logic                             access_valid_o,            // access_word_o is what was read.
-  output logic [31:0]                      access_word_o,
-  output logic [payload_bits(BlockBits, Lod):0] first_word_o,              // Word 0, if not cached.
+  input logic access_i,
+  input logic access_write_i,
+  input logic [31:0] access_address_i,
+  input logic [31:0] access_word_i,
+  output logic access_valid_o,  // access_word_o is what was read.
+  output logic [31:0] access_word_o,
+  output logic [payload_bits(BlockBits, Lod):0] first_word_o,  // Word 0, if not cached.
   // Lanes: a word comes memory_clocks(MemoryForm) clocks after its address, {block, octant}, with ack_o or not. In the
   // cached form, word 0 is in block -1.
-  input  logic [Lanes-1:0]                 read_i,
-  input  logic [BlockBits+3:0]             address_i         [Lanes],
-  output logic [Lanes-1:0]                 ack_o,
-  output logic [payload_bits(BlockBits, Lod):0] word_o       [Lanes],
+  input logic [Lanes-1:0] read_i,
+  input logic [BlockBits+3:0] address_i[Lanes],
+  output logic [Lanes-1:0] ack_o,
+  output logic [payload_bits(BlockBits, Lod):0] word_o[Lanes],
   // Lod: whether the words that are written, or, cached, read in a frame, are of the dialect lod.
-  input  logic                             lod_words_i,
+  input logic lod_words_i,
   // Cached: see voxrt_cached_memory.
-  input  logic                             bus_rst_ni,
-  input  logic                             start_i,
-  output logic                             ready_o,
-  input  logic                             flush_i,
-  input  logic [31:0]                      base_i,
-  output axi_read_request_t                axi_o             [BusPorts],
-  input  axi_read_response_t               axi_i             [BusPorts],
-  output memory_events_t                   events_o
+  input logic bus_rst_ni,
+  input logic start_i,
+  output logic ready_o,
+  input logic flush_i,
+  input logic [31:0] base_i,
+  output axi_read_request_t axi_o[BusPorts],
+  input axi_read_response_t axi_i[BusPorts],
+  output memory_events_t events_o
 );
   localparam int unsigned AddressBits = BlockBits + 3;
 
@@ -87,13 +87,13 @@ module voxrt_octree_memory
     );
   end else begin : gen_on_chip
     logic [AddressBits-1:0] address[Lanes];
-    logic                   unused_external;
+    logic unused_external;
 
     always_comb begin
       unused_external = &{bus_rst_ni, flush_i, base_i};
       for (int unsigned p = 0; p < BusPorts; p++) unused_external &= ^axi_i[p];
       for (int unsigned i = 0; i < Lanes; i++) begin
-        address[i]       = address_i[i][AddressBits-1:0];
+        address[i] = address_i[i][AddressBits-1:0];
         unused_external &= address_i[i][AddressBits];
       end
     end

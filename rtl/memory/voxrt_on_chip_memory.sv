@@ -16,31 +16,31 @@ module voxrt_on_chip_memory
   parameter bit          Lod       = 1'b0,
   parameter string       File      = ""     // As voxrt_octree_memory has it.
 ) (
-  input  logic                             clk_i,
-  input  logic                             rst_ni,
+  input logic clk_i,
+  input logic rst_ni,
   // Report dialect, word addresses, any order, one access per clock; what is written beyond the memory is dropped.
-  input  logic                             access_i,
-  input  logic                             access_write_i,
-  input  logic [31:0]                      access_address_i,
-  input  logic [31:0]                      access_word_i,
-  input  logic                             lod_words_i,               // Words are of the dialect lod; only with Lod.
-  output logic                             access_valid_o,            // access_word_o is what was read.
-  output logic [31:0]                      access_word_o,
-  output logic [payload_bits(BlockBits, Lod):0] first_word_o,              // Word 0.
+  input logic access_i,
+  input logic access_write_i,
+  input logic [31:0] access_address_i,
+  input logic [31:0] access_word_i,
+  input logic lod_words_i,  // Words are of the dialect lod; only with Lod.
+  output logic access_valid_o,  // access_word_o is what was read.
+  output logic [31:0] access_word_o,
+  output logic [payload_bits(BlockBits, Lod):0] first_word_o,  // Word 0.
   // Lanes: a word comes memory_clocks(Banked ? BankedForm : PrivateForm) clocks after its address, {block, octant}, with ack_o or not.
-  input  logic [Lanes-1:0]                 read_i,
-  input  logic [BlockBits+2:0]             address_i         [Lanes],
-  output logic [Lanes-1:0]                 ack_o,
-  output logic [payload_bits(BlockBits, Lod):0] word_o            [Lanes]
+  input logic [Lanes-1:0] read_i,
+  input logic [BlockBits+2:0] address_i[Lanes],
+  output logic [Lanes-1:0] ack_o,
+  output logic [payload_bits(BlockBits, Lod):0] word_o[Lanes]
 );
   localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
   localparam int unsigned AddressBits = BlockBits + 3;
   localparam int unsigned Clocks = memory_clocks(Banked ? BankedForm : PrivateForm);
 
-  logic [  PayloadBits:0] encoded, encoded_q, read_back;
-  logic [           31:0] offset;
+  logic [PayloadBits:0] encoded, encoded_q, read_back;
+  logic [31:0] offset;
   logic [AddressBits-1:0] offset_q;
-  logic                   access_q, write_q, first_q, in_memory_q;
+  logic access_q, write_q, first_q, in_memory_q;
 
   voxrt_word_encoder #(
     .BlockBits(BlockBits),
@@ -110,7 +110,7 @@ module voxrt_on_chip_memory
 
   // Reading.
   logic [Clocks-1:0] reads_q, first_reads_q;
-  logic [      31:0] decoded;
+  logic [31:0] decoded;
 
   always_ff @(posedge clk_i) begin
     reads_q       <= rst_ni ? {reads_q[Clocks-2:0], access_q && !write_q} : '0;

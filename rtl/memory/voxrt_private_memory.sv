@@ -19,11 +19,11 @@ module voxrt_private_memory #(
   input  logic                   access_write_i,
   input  logic [AddressBits-1:0] access_address_i,
   input  logic [  PayloadBits:0] access_word_i,
-  output logic [  PayloadBits:0] access_word_o,              // Two clocks later.
+  output logic [  PayloadBits:0] access_word_o,            // Two clocks later.
   input  logic [      Lanes-1:0] read_i,
-  input  logic [AddressBits-1:0] address_i         [Lanes],
+  input  logic [AddressBits-1:0] address_i       [Lanes],
   output logic [      Lanes-1:0] ack_o,
-  output logic [  PayloadBits:0] word_o            [Lanes]
+  output logic [  PayloadBits:0] word_o          [Lanes]
 );
   if (AddressBits < 1) begin : gen_bad_address_bits
     $error("voxrt_private_memory: AddressBits must be 1 bit or more");
@@ -34,8 +34,8 @@ module voxrt_private_memory #(
 
   localparam int unsigned Copies = (Lanes + 1) / 2;
 
-  logic [3:0]       count_q;
-  logic             prefers_even;
+  logic [3:0] count_q;
+  logic prefers_even;
   logic [Lanes-1:0] accepted, accepted_q, ack_q;
 
   assign prefers_even = count_q[3];
@@ -55,10 +55,10 @@ module voxrt_private_memory #(
 
   for (genvar c = 0; c < Copies; c++) begin : gen_copy
     localparam int unsigned Even = 2 * c;
-    localparam bit          Paired = Even + 1 < Lanes;
+    localparam bit Paired = Even + 1 < Lanes;
     localparam int unsigned Odd = Paired ? Even + 1 : Even;
 
-    logic                 accessed, odd_reads, swaps, swapped1_q, swapped2_q;
+    logic accessed, odd_reads, swaps, swapped1_q, swapped2_q;
     logic [PayloadBits:0] a_word, b_word;
 
     assign accessed  = access_i && (access_write_i || c == 0);

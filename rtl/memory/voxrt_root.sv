@@ -7,21 +7,21 @@ module voxrt_root
   import voxrt_pkg::*;
 #(
   parameter int unsigned BlockBits    = 12,
-  parameter int unsigned MemoryClocks = 2,    // From an address to its word, as memory_clocks has it: 2 .. 5.
+  parameter int unsigned MemoryClocks = 2,     // From an address to its word, as memory_clocks has it: 2 .. 5.
   parameter bit          Lod          = 1'b0,
-  parameter bit          ReadsFirst   = 1'b0  // Word 0 is read like all others, from block -1.
+  parameter bit          ReadsFirst   = 1'b0   // Word 0 is read like all others, from block -1.
 ) (
-  input  logic                             clk_i,
-  input  logic                             rst_ni,
-  input  logic                             start_i,
-  input  logic [31:0]                      address_i,       // Of a word.
+  input  logic                                  clk_i,
+  input  logic                                  rst_ni,
+  input  logic                                  start_i,
+  input  logic [                          31:0] address_i,       // Of a word.
   input  logic [payload_bits(BlockBits, Lod):0] first_word_i,    // Word 0.
-  output logic                             valid_o,
+  output logic                                  valid_o,
   output logic [payload_bits(BlockBits, Lod):0] root_o,
   // Lane 0's port, as voxrt_octree_memory has it. Words that come before valid_o are not lane 0's.
-  output logic                             read_o,
-  output logic [BlockBits+3:0]             read_address_o,
-  input  logic                             ack_i,
+  output logic                                  read_o,
+  output logic [                 BlockBits+3:0] read_address_o,
+  input  logic                                  ack_i,
   input  logic [payload_bits(BlockBits, Lod):0] word_i
 );
   if (MemoryClocks < 2 || MemoryClocks > 5) begin : gen_bad_memory_clocks
@@ -31,11 +31,11 @@ module voxrt_root
   localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
   localparam int unsigned AddressBits = BlockBits + 3;
 
-  logic                    read_q, valid_q, beyond;
+  logic read_q, valid_q, beyond;
   logic [MemoryClocks-1:0] pending_q;
-  logic [            31:0] offset;
-  logic [   AddressBits:0] address_q;
-  logic [   PayloadBits:0] root_q;
+  logic [31:0] offset;
+  logic [AddressBits:0] address_q;
+  logic [PayloadBits:0] root_q;
 
   assign offset = address_i - 32'd1;
   // True of word 0 too, if it is not read.

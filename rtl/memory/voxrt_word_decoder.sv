@@ -7,11 +7,11 @@ module voxrt_word_decoder
 ) (
   input  logic                                  lod_words_i,  // As voxrt_word_encoder has it.
   input  logic [payload_bits(BlockBits, Lod):0] word_i,
-  output logic [31:0]                           word_o
+  output logic [                          31:0] word_o
 );
   localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
 
-  leaf_t     leaf;
+  leaf_t leaf;
   material_t mean;
 
   assign leaf = word_i[$bits(leaf_t)-1:0];

@@ -7,12 +7,12 @@ module voxrt_word_encoder
   parameter bit          Lod       = 1'b0
 ) (
   input  logic                                  lod_words_i,  // The word is of the dialect lod; only with Lod.
-  input  logic [31:0]                           word_i,
+  input  logic [                          31:0] word_i,
   output logic [payload_bits(BlockBits, Lod):0] word_o
 );
   localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
 
-  logic        lod_words;
+  logic lod_words;
   logic [30:0] pointer;
 
   assign lod_words = Lod && lod_words_i;

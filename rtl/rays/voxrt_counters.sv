@@ -4,25 +4,25 @@ module voxrt_counters
 #(
   parameter int unsigned Lanes = 1
 ) (
-  input  logic             clk_i,
-  input  logic             start_i,               // Of a frame.
-  input  logic             rays_start_i,          // The root has been read, which does not count.
-  input  logic             busy_i,
+  input  logic                       clk_i,
+  input  logic                       start_i,               // Of a frame.
+  input  logic                       rays_start_i,          // The root has been read, which does not count.
+  input  logic                       busy_i,
   // A pixel is offered, and accepted; it shows a material.
-  input  logic             pixel_valid_i,
-  input  logic             pixel_ready_i,
-  input  logic             hit_i,
+  input  logic                       pixel_valid_i,
+  input  logic                       pixel_ready_i,
+  input  logic                       hit_i,
   // A lane has received a word.
-  input  logic [Lanes-1:0] word_read_i,
-  input  logic             direction_overflow_i,
-  input  logic             bad_pointer_i,
-  input  logic             step_limit_i,
-  input  memory_events_t   memory_events_i,
-  output error_t           error_o,               // Sticky.
-  output counters_t        counters_o
+  input  logic           [Lanes-1:0] word_read_i,
+  input  logic                       direction_overflow_i,
+  input  logic                       bad_pointer_i,
+  input  logic                       step_limit_i,
+  input  memory_events_t             memory_events_i,
+  output error_t                     error_o,               // Sticky.
+  output counters_t                  counters_o
 );
   counters_t counters_q;
-  error_t    error_q;
+  error_t error_q;
 
   always_ff @(posedge clk_i) begin
     if (busy_i) counters_q.cycles <= counters_q.cycles + 1'b1;

@@ -22,13 +22,13 @@ module voxrt_frame
   localparam int unsigned DepthBits = $clog2(MaxDepth + 1);
   localparam int unsigned LightBits = light_bits(MaxDepth);
 
-  frame_t                         legal, frame_q;
-  logic        [   DepthBits-1:0] depth;
+  frame_t legal, frame_q;
+  logic [DepthBits-1:0] depth;
   logic signed [PositionBits-1:0] position[3];
-  logic signed [   LightBits-1:0] light[3];
+  logic signed [LightBits-1:0] light[3];
   logic signed [DistanceBits-1:0] mirrored_origin_q[3];
-  logic        [      MaxDepth:0] side_q;          // One-hot.
-  logic        [    MaxDepth-1:0] outside_mask_q;
+  logic [MaxDepth:0] side_q;  // One-hot.
+  logic [MaxDepth-1:0] outside_mask_q;
 
   always_comb begin
     legal = frame_i;

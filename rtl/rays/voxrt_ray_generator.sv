@@ -14,17 +14,17 @@ module voxrt_ray_generator
   input  raster_t                    raster_i,
   output logic                       valid_o,
   input  logic                       ready_i,
-  output logic signed [ScanBits-1:0] direction_o [3],
-  output logic                       first_o,          // First pixel of the frame.
-  output logic                       line_end_o,       // Last pixel of its line.
-  output logic                       last_o            // Last pixel of the frame.
+  output logic signed [ScanBits-1:0] direction_o[3],
+  output logic                       first_o,         // First pixel of the frame.
+  output logic                       line_end_o,      // Last pixel of its line.
+  output logic                       last_o           // Last pixel of the frame.
 );
-  logic                       corner_q, valid_q, first_q, line_end_q, last_line_q;
-  logic        [SizeBits-1:0] column_q, row_q;  // From 1 on.
+  logic corner_q, valid_q, first_q, line_end_q, last_line_q;
+  logic [SizeBits-1:0] column_q, row_q;  // From 1 on.
   logic signed [ScanBits-1:0] direction_q[3], line_q[3], next[3];
-  logic                       advances, new_line, last;
+  logic advances, new_line, last;
 
-  assign last     = line_end_q && last_line_q;
+  assign last = line_end_q && last_line_q;
 
   if (Ahead) begin : gen_ahead
     typedef struct packed {
@@ -34,7 +34,7 @@ module voxrt_ray_generator
       logic                     last;
     } made_t;
 
-    logic  ready;
+    logic ready;
     made_t made, offered;
 
     assign advances      = raster_i.corner || (valid_q && ready);

@@ -24,27 +24,27 @@ module voxrt_ray_setup
   parameter bit          Lod          = 1'b0,
   parameter int unsigned RayClocks    = 1      // 1, or 4: one multiplier for three axes.
 ) (
-  input  logic                                    clk_i,
-  input  logic                                    rst_ni,
+  input logic clk_i,
+  input logic rst_ni,
   // Held during a frame.
-  input  world_t                                  world_i,
-  input  logic                                    root_leaf_i,      // The whole world is one leaf ...
-  input  material_t                               root_material_i,  // ... of this material.
-  input  logic        [LodScaleBits-1:0]          lod_scale_i,      // 0: off.
+  input world_t world_i,
+  input logic root_leaf_i,  // The whole world is one leaf ...
+  input material_t root_material_i,  // ... of this material.
+  input logic [LodScaleBits-1:0] lod_scale_i,  // 0: off.
   // Directions.
-  input  logic                                    valid_i,
-  output logic                                    ready_o,
-  input  logic        [Lanes-1:0]                 lane_i,           // One-hot: which lane the ray is for.
-  input  logic signed [ScanBits-1:0]              direction_i [3],
-  input  logic                                    shadow_i,         // A shadow ray, from ...
-  input  logic        [2:0][ShadowPointLimit-1:0] point_i,          // ... this point, 1/32 voxel, grid frame, signed.
-  input  logic        [TagBits-1:0]               tag_i,
+  input logic valid_i,
+  output logic ready_o,
+  input logic [Lanes-1:0] lane_i,  // One-hot: which lane the ray is for.
+  input logic signed [ScanBits-1:0] direction_i[3],
+  input logic shadow_i,  // A shadow ray, from ...
+  input logic [2:0][ShadowPointLimit-1:0] point_i,  // ... this point, 1/32 voxel, grid frame, signed.
+  input logic [TagBits-1:0] tag_i,
   // Rays, in the same order.
-  output logic                                    valid_o,
-  output logic        [Lanes-1:0]                 lane_o,
-  output logic                                    overflow_o,       // A component was 2**DirectionBits or more.
-  output ray_t                                    ray_o,
-  output weights_t                                weights_o
+  output logic valid_o,
+  output logic [Lanes-1:0] lane_o,
+  output logic overflow_o,  // A component was 2**DirectionBits or more.
+  output ray_t ray_o,
+  output weights_t weights_o
 );
   localparam int unsigned PointBits = MaxDepth + ShadowFractionBits + 2;
   localparam int unsigned DistanceBits = distance_bits(MaxDepth, PositionBits);
@@ -59,8 +59,8 @@ module voxrt_ray_setup
 
   // Frame.
   logic signed [DistanceBits-1:0] world_origin[3], mirrored_world_origin[3];
-  logic        [   DepthBits-1:0] depth;
-  logic        [      MaxDepth:0] side;
+  logic [DepthBits-1:0] depth;
+  logic [MaxDepth:0] side;
 
   always_comb begin
     for (int unsigned a = 0; a < 3; a++) begin
@@ -72,7 +72,7 @@ module voxrt_ray_setup
   end
 
   // The pipeline moves when `advance` is high; `moves`: a stage that holds a ray does.
-  logic       advance, takes;
+  logic advance, takes;
   logic [1:0] turn;
 
   voxrt_turns #(
@@ -94,13 +94,13 @@ module voxrt_ray_setup
   end
 
   // What travels along unchanged.
-  logic [Stages:1]            valid_q, moves;
-  logic [Lanes-1:0]           lane_q     [1:Stages];
-  logic [2:0]                 mirrored_q [1:Stages];
-  logic [2:0]                 dead_q     [1:Stages];
-  logic [Stages:1]            overflow_q;
-  logic [WeightBits-1:0]      weight3    [3];
-  logic [WeightBits-1:0]      weight_q   [4:Stages] [3];
+  logic [Stages:1] valid_q, moves;
+  logic [Lanes-1:0] lane_q[1:Stages];
+  logic [2:0] mirrored_q[1:Stages];
+  logic [2:0] dead_q[1:Stages];
+  logic [Stages:1] overflow_q;
+  logic [WeightBits-1:0] weight3[3];
+  logic [WeightBits-1:0] weight_q[4:Stages][3];
 
   assign moves = advance ? valid_q : '0;
 
@@ -125,8 +125,8 @@ module voxrt_ray_setup
 
   // 1: sign and size.
   logic [DirectionBits-1:0] size_q[3];
-  logic [DirectionBits:0]   magnitude[3];
-  logic [2:0]               negative, zero, too_large;
+  logic [DirectionBits:0] magnitude[3];
+  logic [2:0] negative, zero, too_large;
 
   always_comb begin
     for (int unsigned a = 0; a < 3; a++) begin
@@ -151,7 +151,7 @@ module voxrt_ray_setup
   end
 
   // Shadow rays, in stages 2 and 7: their origin, in the mirrored frame.
-  logic                           shadow2, shadow7;
+  logic shadow2, shadow7;
   logic signed [DistanceBits-1:0] point2[3];
 
   // 2, 3: weights; from the origin to the near plane, as voxrt_lane does it.
@@ -200,13 +200,13 @@ module voxrt_ray_setup
   end
 
   // Shadow rays.
-  logic                           shadow11;
-  logic        [     TagBits-1:0] tag11;
+  logic shadow11;
+  logic [TagBits-1:0] tag11;
   logic signed [DistanceBits-1:0] point11[3];
 
   if (Light) begin : gen_light
-    logic        [   Stages:1] shadow_q;
-    logic        [TagBits-1:0] tag_q  [1:Stages];
+    logic [Stages:1] shadow_q;
+    logic [TagBits-1:0] tag_q[1:Stages];
     logic signed [PointBits-1:0] point_q[1:Stages][3];
 
     always_ff @(posedge clk_i) begin
@@ -255,9 +255,9 @@ module voxrt_ray_setup
     localparam int unsigned ProductBits = DirectionBits + LodScaleBits;
     localparam logic [WholeBits-1:0] NoReach = {1'b1, (WholeBits - 1)'(0)};
     logic [DirectionBits-1:0] larger_size, largest_q;
-    logic [  ProductBits-1:0] product4;
-    logic [   LodScaleBits:0] reach;
-    logic [    WholeBits-1:0] reach_q[5:Stages];
+    logic [ProductBits-1:0] product4;
+    logic [LodScaleBits:0] reach;
+    logic [WholeBits-1:0] reach_q[5:Stages];
 
     assign larger_size = size_q[0] > size_q[1] ? size_q[0] : size_q[1];
 
@@ -308,9 +308,9 @@ module voxrt_ray_setup
   );
 
   // 7: order of the near planes.
-  logic signed [TimeBits-1:0] near_q[7:8] [3];
-  logic [2:0]                 ahead_q, enters_q;  // The near plane is yet to be crossed; by moving.
-  logic                       later_yx_q, later_zx_q, later_zy_q;
+  logic signed [TimeBits-1:0] near_q[7:8][3];
+  logic [2:0] ahead_q, enters_q;  // The near plane is yet to be crossed; by moving.
+  logic later_yx_q, later_zx_q, later_zy_q;
 
   always_ff @(posedge clk_i) begin
     if (moves[6]) begin
@@ -328,9 +328,9 @@ module voxrt_ray_setup
 
   // 8: the entry key, the last near plane that is ahead.
   logic signed [TimeBits-1:0] near[4], entry_time_q;
-  logic        [KeyBits-1:0]  entry_time_key_q[9:11];
-  face_e                      entry_face, entry_face_q[8:11];
-  logic [11:8]                outside_q;
+  logic [KeyBits-1:0] entry_time_key_q[9:11];
+  face_e entry_face, entry_face_q[8:11];
+  logic [11:8] outside_q;
 
   assign near = '{near_q[7][0], near_q[7][1], near_q[7][2], '0};
 
@@ -353,7 +353,7 @@ module voxrt_ray_setup
   // 9: near plane - key - 1, where a dead axis has the key 0; how long the ray takes through half of the world, which
   // is 16 * weight * side / 2.
   logic signed [GapBits-1:0] gap_q[3];
-  logic [SpanBits-2:0]       half_span8_q[3], half_span_q[3];
+  logic [SpanBits-2:0] half_span8_q[3], half_span_q[3];
 
   always_ff @(posedge clk_i) begin
     for (int unsigned a = 0; a < 3; a++) begin
@@ -374,9 +374,9 @@ module voxrt_ray_setup
 
   // 10: which middle and far planes come before the entry: their T less the key is below 0, or is 0 and the axis comes
   // first. In whole numbers, less one: below 0.
-  logic [2:0]       last;  // Of equals.
+  logic [2:0] last;  // Of equals.
   logic [GapBits:0] middle[3], far[3];
-  logic [2:0]       past_middle_q[10:11], past_far_q;
+  logic [2:0] past_middle_q[10:11], past_far_q;
 
   always_comb begin
     for (int unsigned a = 0; a < 3; a++) begin

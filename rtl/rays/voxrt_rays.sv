@@ -13,36 +13,36 @@ module voxrt_rays
   parameter bit          Strips       = 1'b0,  // Rays in strips, not line by line.
   parameter int unsigned RayClocks    = 1
 ) (
-  input  logic                    clk_i,
-  input  logic                    rst_ni,
+  input  logic                           clk_i,
+  input  logic                           rst_ni,
   // Frame; see voxrt_ray_generator and voxrt_ray_setup.
-  input  raster_t                 raster_i,
-  input  world_t                  world_i,
-  input  logic                    root_leaf_i,
-  input  material_t               root_material_i,
-  input  logic [LodScaleBits-1:0] lod_scale_i,
+  input  raster_t                        raster_i,
+  input  world_t                         world_i,
+  input  logic                           root_leaf_i,
+  input  material_t                      root_material_i,
+  input  logic        [LodScaleBits-1:0] lod_scale_i,
   // Lanes that have a credit (with many lanes, in the next clock); the lane that a ray is issued to, which takes one.
-  input  logic        [Lanes-1:0] credit_i,
-  output logic        [Lanes-1:0] issue_o,          // One-hot or 0.
+  input  logic        [       Lanes-1:0] credit_i,
+  output logic        [       Lanes-1:0] issue_o,          // One-hot or 0.
   // Shadow rays, from voxrt_light.
-  input  logic                    shadow_valid_i,
-  input  logic        [Lanes-1:0] shadow_lane_i,    // One-hot.
-  input  shadow_ray_t             shadow_ray_i,
+  input  logic                           shadow_valid_i,
+  input  logic        [       Lanes-1:0] shadow_lane_i,    // One-hot.
+  input  shadow_ray_t                    shadow_ray_i,
   // Rays, as voxrt_ray_setup makes them.
-  output logic                    valid_o,
-  output logic        [Lanes-1:0] lane_o,
-  output logic                    overflow_o,
-  output ray_t                    ray_o,
-  output weights_t                weights_o
+  output logic                           valid_o,
+  output logic        [       Lanes-1:0] lane_o,
+  output logic                           overflow_o,
+  output ray_t                           ray_o,
+  output weights_t                       weights_o
 );
-  logic                       direction_valid, setup_ready, issues;
+  logic direction_valid, setup_ready, issues;
   logic signed [ScanBits-1:0] direction[3], ray_direction[3];
-  logic        [   Lanes-1:0] next_lane_q;  // One-hot.
+  logic [Lanes-1:0] next_lane_q;  // One-hot.
 
   if (many_lanes(Lanes)) begin : gen_lanes
     // Whether the next lane has a credit. It is found a clock earlier, because credits come over long wires.
     logic [Lanes-1:0] lane_after;
-    logic             granted_q;
+    logic granted_q;
 
     assign lane_after = {next_lane_q[Lanes-2:0], next_lane_q[Lanes-1]};
 

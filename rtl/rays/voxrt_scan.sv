@@ -7,16 +7,16 @@
 module voxrt_scan
   import voxrt_pkg::*;
 (
-  input  logic                       clk_i,
-  input  logic                       rst_ni,
-  input  logic                       start_i,
-  input  logic [2:0][CameraBits-1:0] look_i,         // Signed.
-  input  logic [2:0][CameraBits-1:0] right_i,        // Signed.
-  input  logic [2:0][CameraBits-1:0] up_i,           // Signed.
-  input  logic [       SizeBits-2:0] half_width_i,
-  input  logic [       SizeBits-2:0] half_height_i,
-  output logic                       corner_o,
-  output logic [2:0][  ScanBits-1:0] line_step_o     // Signed.
+  input  logic                                clk_i,
+  input  logic                                rst_ni,
+  input  logic                                start_i,
+  input  logic [         2:0][CameraBits-1:0] look_i,         // Signed.
+  input  logic [         2:0][CameraBits-1:0] right_i,        // Signed.
+  input  logic [         2:0][CameraBits-1:0] up_i,           // Signed.
+  input  logic [SizeBits-2:0]                 half_width_i,
+  input  logic [SizeBits-2:0]                 half_height_i,
+  output logic                                corner_o,
+  output logic [         2:0][  ScanBits-1:0] line_step_o     // Signed.
 );
   typedef enum logic [2:0] {
     Idle,    // line_step_o is the step.
@@ -29,13 +29,13 @@ module voxrt_scan
 
   localparam int unsigned HalfBits = SizeBits - 1;
 
-  state_e                            state_q;
-  logic        [         HalfBits-1:0] half_width_q, half_height_q;
-  logic        [$clog2(HalfBits)-1:0]  bit_q;
-  logic signed [       ScanBits-1:0] sum_q[3];
+  state_e state_q;
+  logic [HalfBits-1:0] half_width_q, half_height_q;
+  logic [$clog2(HalfBits)-1:0] bit_q;
+  logic signed [ScanBits-1:0] sum_q[3];
   // What a state adds, one clock later: choice and sum in one clock would be a long path.
-  logic                              add_q, double_q, subtract_q, corner_q;
-  logic signed [       CameraBits:0] term_q[3];
+  logic add_q, double_q, subtract_q, corner_q;
+  logic signed [CameraBits:0] term_q[3];
 
   always_ff @(posedge clk_i) begin
     add_q    <= state_q != Idle && state_q != Corner && !start_i && rst_ni;

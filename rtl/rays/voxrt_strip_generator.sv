@@ -17,10 +17,10 @@ module voxrt_strip_generator
   input  logic                       ready_i,
   output logic signed [ScanBits-1:0] direction_o[3]
 );
-  logic                       valid_q, advances;
+  logic valid_q, advances;
   logic signed [ScanBits-1:0] direction_q[3], top_q[3], right[3], down[3], beside[3];
   logic signed [ScanBits-1:0] other_q[3];  // The top of the other half's next column.
-  strip_place_t               place;
+  strip_place_t place;
 
   assign advances = valid_q && ready_i;
 
@@ -44,7 +44,7 @@ module voxrt_strip_generator
   end
 
   // The right half begins so many columns beside the corner.
-  logic                walks_q;
+  logic walks_q;
   logic [SizeBits-2:0] columns_q;
 
   always_ff @(posedge clk_i) begin

@@ -14,19 +14,19 @@ module voxrt_strip_place
   parameter int unsigned Lanes   = 1,
   parameter bit          ByLines = 1'b0  // The order, see above.
 ) (
-  input  logic                clk_i,
-  input  logic                start_i,    // To the first pixel. Width and height are held from here on.
-  input  logic [SizeBits-1:0] width_i,
-  input  logic [SizeBits-1:0] height_i,
-  input  logic                advances_i,
-  output strip_place_t        place_o
+  input  logic                        clk_i,
+  input  logic                        start_i,     // To the first pixel. Width and height are held from here on.
+  input  logic         [SizeBits-1:0] width_i,
+  input  logic         [SizeBits-1:0] height_i,
+  input  logic                        advances_i,
+  output strip_place_t                place_o
 );
-  logic [StripLineLimit-1:0] line_q, strip_end;         // In the strip.
-  logic [      SizeBits-1:0] first_line_q, lines_left;  // Of the strip, in the frame; from there on.
-  logic [      SizeBits-2:0] column_q;                  // In its half.
-  logic                      right_half_q, leftwards_q;
-  logic                      last_line, last_of_half, last_column, last_strip;
-  logic [               2:0] line_bits;
+  logic [StripLineLimit-1:0] line_q, strip_end;  // In the strip.
+  logic [SizeBits-1:0] first_line_q, lines_left;  // Of the strip, in the frame; from there on.
+  logic [SizeBits-2:0] column_q;  // In its half.
+  logic right_half_q, leftwards_q;
+  logic last_line, last_of_half, last_column, last_strip;
+  logic [2:0] line_bits;
 
   assign line_bits  = strip_line_bits(Lanes, width_i);
   assign strip_end  = StripLineLimit'((1 << line_bits) - 1);
@@ -68,11 +68,11 @@ module voxrt_strip_place
   end
 
   assign place_o = '{
-      last_line: last_line,
-      last_of_half: last_of_half,
-      last_column: last_column,
-      last_strip: last_strip,
-      leftwards: leftwards_q,
-      address: (StripLimit'({column_q, right_half_q}) << line_bits) | StripLimit'(line_q)
-  };
+          last_line: last_line,
+          last_of_half: last_of_half,
+          last_column: last_column,
+          last_strip: last_strip,
+          leftwards: leftwards_q,
+          address: (StripLimit'({column_q, right_half_q}) << line_bits) | StripLimit'(line_q)
+      };
 endmodule

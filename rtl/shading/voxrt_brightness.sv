@@ -18,22 +18,22 @@ module voxrt_brightness
   parameter bit          Light    = 1'b1,
   parameter bit          Mirrors  = 1'b1
 ) (
-  input  logic                                              clk_i,
-  input  logic                                              rst_ni,
+  input  logic                                                          clk_i,
+  input  logic                                                          rst_ni,
   // Held during a frame.
-  input  logic        [MaxDepth:0]                          side_i,        // Of the world, voxels, one-hot.
-  input  logic        [2:0][31:0]                           light_i,       // 1/16 voxel, signed.
-  input  shading_t                                          shading_i,
+  input  logic        [                               MaxDepth:0]       side_i,       // Of the world, voxels, one-hot.
+  input  logic        [                                      2:0][31:0] light_i,      // 1/16 voxel, signed.
+  input  shading_t                                                      shading_i,
   // Pixels, their details as the reorder buffer has them.
-  input  logic                                              valid_i,
-  output logic                                              ready_o,
-  input  pixel_t                                            pixel_i,
-  input  logic                                              lit_i,
-  input  logic [detail_bits(MaxDepth, Light, Mirrors)-1:0] detail_i,
-  output logic                                              valid_o,
-  input  logic                                              ready_i,
-  output pixel_t                                            pixel_o,
-  output brightness_t                                       brightness_o
+  input  logic                                                          valid_i,
+  output logic                                                          ready_o,
+  input  pixel_t                                                        pixel_i,
+  input  logic                                                          lit_i,
+  input  logic        [detail_bits(MaxDepth, Light, Mirrors)-1:0]       detail_i,
+  output logic                                                          valid_o,
+  input  logic                                                          ready_i,
+  output pixel_t                                                        pixel_o,
+  output brightness_t                                                   brightness_o
 );
   localparam int unsigned HitBits = MaxDepth + FractionBits;
   localparam int unsigned DetailBits = detail_bits(MaxDepth, Light, Mirrors);
@@ -46,22 +46,22 @@ module voxrt_brightness
     pixel_t   pixel;
     shade_e   shade;
     logic     lit;
-    logic     upper;  // The face looks along its axis.
+    logic     upper;    // The face looks along its axis.
     mirrors_t mirrors;
   } info_t;
 
   logic [Stages:1] valid_q;
-  info_t          info_q[1:Stages];
-  logic            moves;
+  info_t info_q[1:Stages];
+  logic moves;
 
   assign moves   = ready_i || !valid_q[Stages];
   assign ready_o = moves;
   assign valid_o = valid_q[Stages];
   assign pixel_o = info_q[Stages].pixel;
 
-  shade_e     shade;
+  shade_e shade;
   logic [2:0] mirrored;
-  logic       upper, by_face;
+  logic upper, by_face;
 
   always_comb begin
     shade    = shade_e'(detail_i[DetailBits-1-:2]);
@@ -93,13 +93,13 @@ module voxrt_brightness
   end
 
   logic [SquareBits-1:0] part;
-  logic [ WholeBits-1:0] whole;
+  logic [WholeBits-1:0] whole;
 
   if (Light) begin : gen_light
     // 1 detail, 2 point, 3 D.
-    logic        [3*HitBits+2:0]            detail1_q;
-    hit_point_t                             hit_point1;
-    logic signed [LightBits+1:0]            direction[3];
+    logic [3*HitBits+2:0] detail1_q;
+    hit_point_t hit_point1;
+    logic signed [LightBits+1:0] direction[3];
     logic signed [MaxDepth+FractionBits+2:0] unused_point[3];
 
     always_ff @(posedge clk_i) if (moves) detail1_q <= detail_i[3*HitBits+2:0];
@@ -124,12 +124,12 @@ module voxrt_brightness
     );
 
     // 4 sizes, 5 squares, 6 sum and square, 7 and 8 ambient x sum and x face, 9 compare.
-    logic [DirectionBits-1:0] size4_q  [3];
-    logic [   SquareBits-1:0] square5_q[3], square6_q, square7_q, square8_q, part9_q;
-    logic [    WholeBits-1:0] sum6_q, sum7_q, sum8_q, whole9_q;
-    logic [  WholeBits+7:0] ambient7_q, ambient8_q;
-    logic [            7:0] face7_q, face8_q;
-    logic [           15:0] shadow8_q;  // face7_q * ambient.
+    logic [DirectionBits-1:0] size4_q[3];
+    logic [SquareBits-1:0] square5_q[3], square6_q, square7_q, square8_q, part9_q;
+    logic [WholeBits-1:0] sum6_q, sum7_q, sum8_q, whole9_q;
+    logic [WholeBits+7:0] ambient7_q, ambient8_q;
+    logic [7:0] face7_q, face8_q;
+    logic [15:0] shadow8_q;  // face7_q * ambient.
 
     always_ff @(posedge clk_i) begin
       if (moves) begin
@@ -183,7 +183,7 @@ module voxrt_brightness
     brightness_o.sum_given  = info_q[Stages].shade == ShadeMean;
     brightness_o.part       = part;
     brightness_o.whole      = whole;
-    brightness_o.sum        = info_q[Stages].mirrors.sum;
+    brightness_o.sum        = info_q[Stages].mirrors.total;
     if (brightness_o.sum_given) begin
       brightness_o.part  = SquareBits'(1);
       brightness_o.whole = WholeBits'(info_q[Stages].mirrors.count);

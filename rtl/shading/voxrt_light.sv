@@ -11,24 +11,24 @@ module voxrt_light
 #(
   parameter int unsigned Lanes      = 1,
   parameter int unsigned MaxDepth   = 10,
-  parameter int unsigned QueueDepth = 16  // Shadow rays per lane: a power of two, 2 or more.
+  parameter int unsigned QueueDepth = 16   // Shadow rays per lane: a power of two, 2 or more.
 ) (
-  input  logic                       clk_i,
-  input  logic                       rst_ni,
+  input  logic                             clk_i,
+  input  logic                             rst_ni,
   // Held during a frame.
-  input  logic          [MaxDepth:0] side_i,                     // Of the world, voxels, one-hot.
-  input  logic          [2:0][31:0]  light_i,                    // 1/16 voxel, signed.
+  input  logic          [MaxDepth:0]       side_i,                    // Of the world, voxels, one-hot.
+  input  logic          [       2:0][31:0] light_i,                   // 1/16 voxel, signed.
   // Hit points, as voxrt_lane gives them.
-  input  logic          [ Lanes-1:0] hit_point_claim_i,
-  output logic          [ Lanes-1:0] hit_point_ready_o,
-  input  logic          [ Lanes-1:0] hit_point_valid_i,
-  input  hit_point_t                 hit_point_i        [Lanes],
-  input  logic          [ Lanes-1:0] issued_i,
+  input  logic          [ Lanes-1:0]       hit_point_claim_i,
+  output logic          [ Lanes-1:0]       hit_point_ready_o,
+  input  logic          [ Lanes-1:0]       hit_point_valid_i,
+  input  hit_point_t                       hit_point_i      [Lanes],
+  input  logic          [ Lanes-1:0]       issued_i,
   // To voxrt_ray_setup, which always takes them.
-  output logic                       valid_o,
-  output logic          [ Lanes-1:0] lane_o,                     // One-hot.
-  output shadow_ray_t                shadow_ray_o,
-  output light_planes_t              light_planes_o
+  output logic                             valid_o,
+  output logic          [ Lanes-1:0]       lane_o,                    // One-hot.
+  output shadow_ray_t                      shadow_ray_o,
+  output light_planes_t                    light_planes_o
 );
   if (QueueDepth < 2 || 2 ** $clog2(QueueDepth) != QueueDepth) begin : gen_bad_queue_depth
     $error("voxrt_light: QueueDepth must be a power of two, 2 or more");
@@ -46,9 +46,9 @@ module voxrt_light
     logic [2:0][HitBits-1:0] point;
   } queued_t;
 
-  logic    [Lanes-1:0] waiting, grant_q;  // One-hot.
-  queued_t             queued[Lanes];
-  queued_t             granted;
+  logic [Lanes-1:0] waiting, grant_q;  // One-hot.
+  queued_t queued[Lanes];
+  queued_t granted;
 
   always_ff @(posedge clk_i) begin
     grant_q <= Lanes'({grant_q, grant_q[Lanes-1]});
@@ -56,9 +56,9 @@ module voxrt_light
   end
 
   for (genvar i = 0; i < Lanes; i++) begin : gen_lane
-    logic    [CountBits-1:0] credits_q;  // Shadow rays that the lane may still claim.
-    logic                    ready;
-    queued_t                 arriving;
+    logic [CountBits-1:0] credits_q;  // Shadow rays that the lane may still claim.
+    logic ready;
+    queued_t arriving;
 
     always_comb begin
       arriving.tag      = hit_point_i[i].tag;
@@ -99,12 +99,12 @@ module voxrt_light
   end
 
   // The hit point, then the point that is lit, then the direction.
-  logic                [        2:0] valid_q;
-  logic                [  Lanes-1:0] lane_q[3];
-  logic                [TagBits-1:0] tag_q [1:2];
-  queued_t                           queued_q;
-  hit_point_t                        hit_point;
-  logic signed     [LightBits+1:0] direction[3];
+  logic [2:0] valid_q;
+  logic [Lanes-1:0] lane_q[3];
+  logic [TagBits-1:0] tag_q[1:2];
+  queued_t queued_q;
+  hit_point_t hit_point;
+  logic signed [LightBits+1:0] direction[3];
   logic signed [MaxDepth+FractionBits+2:0] point[3];
 
   always_ff @(posedge clk_i) begin
@@ -148,7 +148,7 @@ module voxrt_light
   // The light among the planes.
   localparam int unsigned Voxel = 2 ** FractionBits;
   logic signed [LightBits-1:0] light[2][3];
-  logic        [   MaxDepth:0] occluder_q[2][3], backface_q[2][3];
+  logic [MaxDepth:0] occluder_q[2][3], backface_q[2][3];
 
   function automatic logic [MaxDepth:0] plane_at(logic signed [LightBits-1:0] height, logic [MaxDepth:0] side);
     logic signed [LightBits-1:0] plane = height >>> FractionBits;

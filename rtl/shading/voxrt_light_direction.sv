@@ -6,16 +6,16 @@ module voxrt_light_direction
 #(
   parameter int unsigned MaxDepth = 10
 ) (
-  input  logic                                                    clk_i,
-  input  logic                                                    enable_i,
+  input  logic                                          clk_i,
+  input  logic                                          enable_i,
   // Held during a frame.
-  input  logic        [MaxDepth:0]                                side_i,           // Voxels, one-hot.
-  input  logic        [2:0][31:0]                                 light_i,          // 1/16 voxel, grid frame, signed.
+  input  logic        [               MaxDepth:0]       side_i,          // Voxels, one-hot.
+  input  logic        [                      2:0][31:0] light_i,         // 1/16 voxel, grid frame, signed.
   // The hit point; its tag is not used.
-  input  hit_point_t                                              hit_point_i,
+  input  hit_point_t                                    hit_point_i,
   // 1/32 voxel, grid frame.
-  output logic signed [MaxDepth+FractionBits+2:0]                 point_o      [3],
-  output logic signed [light_bits(MaxDepth)+1:0]                  direction_o  [3]
+  output logic signed [MaxDepth+FractionBits+2:0]       point_o    [3],
+  output logic signed [ light_bits(MaxDepth)+1:0]       direction_o[3]
 );
   localparam int unsigned HitBits = MaxDepth + FractionBits;
   localparam int unsigned PointBits = HitBits + 3;
@@ -25,7 +25,7 @@ module voxrt_light_direction
   logic signed [PointBits-1:0] side, mirrored_point[3];
   logic signed [LightBits-1:0] light[3];
   logic signed [PointBits-1:0] point1_q[3], point2_q[3];
-  logic signed [ WideBits-1:0] direction2_q[3];
+  logic signed [WideBits-1:0] direction2_q[3];
 
   assign side = {1'b0, side_i, ShadowFractionBits'(0)};
 

@@ -3,14 +3,14 @@
 
 module voxrt_merge #(
   parameter int unsigned Lanes = 1,
-  parameter int unsigned Width = 8  // Bits: 1 or more.
+  parameter int unsigned Width = 8   // Bits: 1 or more.
 ) (
   input  logic             clk_i,
   input  logic             rst_ni,
   input  logic             start_i,         // The next pixel is lane 0's.
   input  logic [Lanes-1:0] valid_i,
   output logic [Lanes-1:0] ready_o,
-  input  logic [Width-1:0] pixel_i [Lanes],
+  input  logic [Width-1:0] pixel_i[Lanes],
   output logic             valid_o,
   input  logic             ready_i,
   output logic [Width-1:0] pixel_o
@@ -20,7 +20,7 @@ module voxrt_merge #(
   end
 
   logic [Lanes-1:0] next_lane_q;  // One-hot.
-  logic             valid;
+  logic valid;
   logic [Width-1:0] pixel;
 
   always_comb begin

@@ -13,29 +13,29 @@
 module voxrt_pixel_packer
   import voxrt_pkg::*;
 (
-  input  logic        clk_i,
-  input  logic        rst_ni,
-  input  logic        valid_i,
-  output logic        ready_o,
-  input  colour_t     colour_i,
-  input  logic        first_i,        // Of the frame.
-  input  logic        line_end_i,
-  output logic        m_axis_tvalid,
-  input  logic        m_axis_tready,
-  output logic [31:0] m_axis_tdata,
-  output logic [ 3:0] m_axis_tkeep,
-  output logic        m_axis_tuser,
-  output logic        m_axis_tlast
+  input  logic           clk_i,
+  input  logic           rst_ni,
+  input  logic           valid_i,
+  output logic           ready_o,
+  input  colour_t        colour_i,
+  input  logic           first_i,        // Of the frame.
+  input  logic           line_end_i,
+  output logic           m_axis_tvalid,
+  input  logic           m_axis_tready,
+  output logic    [31:0] m_axis_tdata,
+  output logic    [ 3:0] m_axis_tkeep,
+  output logic           m_axis_tuser,
+  output logic           m_axis_tlast
 );
-  logic [23:0] kept_q;      // Bytes that did not fit the last word, the first one lowest.
-  logic [ 1:0] kept_bytes_q;
-  logic        kept_first_q;
-  logic        flush_q;     // What is kept is the line's last word.
-  logic        valid_q, user_q, last_q;
+  logic [23:0] kept_q;  // Bytes that did not fit the last word, the first one lowest.
+  logic [1:0] kept_bytes_q;
+  logic kept_first_q;
+  logic flush_q;  // What is kept is the line's last word.
+  logic valid_q, user_q, last_q;
   logic [31:0] data_q;
-  logic [ 3:0] keep_q;
+  logic [3:0] keep_q;
 
-  logic        free, accepts;
+  logic free, accepts;
   logic [23:0] pixel;
   logic [47:0] joined;
 
@@ -98,6 +98,6 @@ module voxrt_pixel_packer
   assign m_axis_tuser  = user_q;
   assign m_axis_tlast  = last_q;
 
-  `VOXRT_ASSERT_STABLE(OfferStays, m_axis_tvalid, m_axis_tready,
-                       {m_axis_tdata, m_axis_tkeep, m_axis_tuser, m_axis_tlast})
+  `VOXRT_ASSERT_STABLE(OfferStays, m_axis_tvalid, m_axis_tready, {
+                       m_axis_tdata, m_axis_tkeep, m_axis_tuser, m_axis_tlast})
 endmodule

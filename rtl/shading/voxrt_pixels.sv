@@ -10,33 +10,41 @@ module voxrt_pixels
   parameter bit          Strips    = 1'b0,  // As voxrt_rays has it.
   parameter int unsigned RayClocks = 1
 ) (
-  input  logic                                            clk_i,
-  input  logic                                            rst_ni,
+  input  logic                                                             clk_i,
+  input  logic                                                             rst_ni,
   // Frame.
-  input  raster_t                                         raster_i,
-  input  logic            [MaxDepth:0]                    side_i,
-  input  logic            [2:0][31:0]                     light_i,
-  input  shading_t                                        shading_i,
-  input  material_write_t                                 material_write_i,
+  input  raster_t                                                          raster_i,
+  input  logic            [                              MaxDepth:0]       side_i,
+  input  logic            [                                     2:0][31:0] light_i,
+  input  shading_t                                                         shading_i,
+  input  material_write_t                                                  material_write_i,
   // From the lanes.
-  input  logic            [Lanes-1:0]                     valid_i,
-  output logic            [Lanes-1:0]                     ready_o,
-  input  logic            [Lanes-1:0]                     lit_i,
-  input  logic [pixel_bits(MaxDepth, Light, Mirrors)-1:0] pixel_i          [Lanes],
+  input  logic            [                               Lanes-1:0]       valid_i,
+  output logic            [                               Lanes-1:0]       ready_o,
+  input  logic            [                               Lanes-1:0]       lit_i,
+  input  logic            [pixel_bits(MaxDepth, Light, Mirrors)-1:0]       pixel_i         [Lanes],
   // Out.
-  output logic                                            pixel_valid_o,
-  input  logic                                            pixel_ready_i,
-  output shaded_pixel_t                                   pixel_o
+  output logic                                                             pixel_valid_o,
+  input  logic                                                             pixel_ready_i,
+  output shaded_pixel_t                                                    pixel_o
 );
   localparam bit Given = Light || Mirrors;
   localparam int unsigned Width = pixel_bits(MaxDepth, Light, Mirrors);
   localparam int unsigned MergeBits = Width + (Light ? 1 : 0);
 
-  logic    [MergeBits-1:0] lane_pixel[Lanes];
-  logic    [MergeBits-1:0] merged, ordered, registered;
-  logic                    merged_valid, merged_ready, ordered_valid, ordered_ready, registered_valid, registered_ready, bright_valid, bright_ready;
-  pixel_t                  bright_pixel;
-  brightness_t             brightness;
+  logic [MergeBits-1:0] lane_pixel[Lanes];
+  logic [MergeBits-1:0] merged, ordered, registered;
+  logic
+      merged_valid,
+      merged_ready,
+      ordered_valid,
+      ordered_ready,
+      registered_valid,
+      registered_ready,
+      bright_valid,
+      bright_ready;
+  pixel_t bright_pixel;
+  brightness_t brightness;
 
   always_comb for (int unsigned i = 0; i < Lanes; i++) lane_pixel[i] = MergeBits'({lit_i[i], pixel_i[i]});
 

@@ -50,7 +50,7 @@ module voxrt_shader
   } info_t;
 
   // Directions.
-  logic                       direction_valid, enters, first, line_end, last;
+  logic direction_valid, enters, first, line_end, last;
   logic signed [ScanBits-1:0] direction[3];
 
   // With many lanes, directions are made ahead: a pixel that enters moves a pointer, not the generator, which is far away.
@@ -74,8 +74,8 @@ module voxrt_shader
   // Credits: places in the FIFO that are not reserved for a pixel under way.
   localparam int unsigned CountBits = $clog2(FifoDepth) + 1;
   logic [CountBits-1:0] credits_q;
-  logic                 leaves, ready_q, advance;
-  logic [1:0]           turn;
+  logic leaves, ready_q, advance;
+  logic [1:0] turn;
 
   voxrt_turns #(
     .RayClocks(RayClocks)
@@ -107,7 +107,7 @@ module voxrt_shader
 
   // The pipeline moves when `advance` is high; `moves`: a stage that holds a pixel does.
   logic [Stages:1] valid_q, moves;
-  info_t           info_q[1:Stages];
+  info_t info_q[1:Stages];
 
   assign moves = advance ? valid_q : '0;
 
@@ -125,10 +125,10 @@ module voxrt_shader
 
   // Not in block RAM, which the octree may fill up.
   (* ram_style = "distributed" *)
-  colour_t                     table_q[256];
-  colour_t                     colour1_q;
+  colour_t table_q[256];
+  colour_t colour1_q;
   logic [2:0][ChannelBits-1:0] channel_q[2:5];  // Red is 0.
-  brightness_t                 brightness_q[1:4];
+  brightness_t brightness_q[1:4];
   logic signed [ScanBits-1:0] direction1_q[3];
 
   always_ff @(posedge clk_i) begin
@@ -148,11 +148,11 @@ module voxrt_shader
 
   // 2 sizes, 3 and 4 squares, 5 sums; on the way the brightness of the face, where it does not depend on the angle.
   logic [DirectionBits-1:0] size2_q[3];
-  logic [SquareBits-1:0]    square4[3], square5_q;
-  logic [SumBits-1:0]       sum5_q, sum6_q, sum7_q, sum8_q;
-  logic                     upper2_q;
-  logic [7:0]               face3_q, face4_q;
-  face_e                    angle4_q;  // The axis whose square it is; FaceNone: the face's brightness.
+  logic [SquareBits-1:0] square4[3], square5_q;
+  logic [SumBits-1:0] sum5_q, sum6_q, sum7_q, sum8_q;
+  logic upper2_q;
+  logic [7:0] face3_q, face4_q;
+  face_e angle4_q;  // The axis whose square it is; FaceNone: the face's brightness.
 
   voxrt_three_products #(
     .RayClocks(RayClocks),
@@ -210,10 +210,10 @@ module voxrt_shader
 
   // 6 and 7 colour x square, 8 dividend, then the bits of (2 c d_a**2 + |d|**2) / (2 |d|**2).
   localparam logic [7:0] ProductLogicBits = 8'(SquareBits - (MultiplierBits - 1));
-  logic [            SquareBits-1:0] square5[3];
-  logic [           ChannelBits-1:0] channel5[3];
+  logic [SquareBits-1:0] square5[3];
+  logic [ChannelBits-1:0] channel5[3];
   logic [SquareBits+ChannelBits-1:0] product7[3];
-  logic [                       7:0] quotient[3];
+  logic [7:0] quotient[3];
 
   always_comb begin
     for (int unsigned c = 0; c < 3; c++) begin
@@ -257,7 +257,7 @@ module voxrt_shader
   end
 
   // Out.
-  logic          fifo_ready;
+  logic fifo_ready;
   shaded_pixel_t shaded;
 
   always_comb begin

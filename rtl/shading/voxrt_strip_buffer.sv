@@ -27,11 +27,11 @@ module voxrt_strip_buffer
   localparam int unsigned QueueDepth = 8;
   localparam int unsigned CountBits = $clog2(QueueDepth) + 1;
 
-  logic               write_strip_q, read_strip_q, writes, reads, unused_ready;
-  logic [        1:0] full_q, reading_q;
+  logic write_strip_q, read_strip_q, writes, reads, unused_ready;
+  logic [1:0] full_q, reading_q;
   logic [CountBits-1:0] read_q;  // Pixels on their way, and in the queue.
-  logic [  Width-1:0] pixel, unused_pixel;
-  strip_place_t       to, from;
+  logic [Width-1:0] pixel, unused_pixel;
+  strip_place_t to, from;
 
   assign ready_o = !full_q[write_strip_q];
   assign writes  = valid_i && ready_o;
