@@ -1,5 +1,5 @@
-// Two masters, one access at a time, to all that the address map has: the core's registers, its octree memory, the
-// board's registers, the table.
+// Joins two masters, one access at a time, to all that the address map has: the core's registers, its octree memory,
+// the board's registers, the table.
 //
 // A master holds valid_i and its access until done_o, which is set for one clock. Master 0 goes first.
 module board_bus

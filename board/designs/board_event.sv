@@ -1,5 +1,6 @@
-// A value from one clock to another, each time send_i is set. It must not be set again before three clocks of the
-// receiver have passed.
+// Hands a value from one clock to another, each time send_i is set. Use it for values of more than one bit, whose bits
+// board_synchronizer would give at different clocks. send_i must not be set again before three clocks of the receiver
+// have passed.
 module board_event #(
   parameter int unsigned Width = 8  // Bits: 1 or more.
 ) (

@@ -1,4 +1,4 @@
-// Which of the two frames in the SDRAM the screen shows, and which one the core draws.
+// Decides which of the two frames in the SDRAM the screen shows, and which one the core draws.
 //
 // A new frame of the core says that the one before is complete: it is shown from now on, if the screen reads no frame, or
 // as soon as it has read the old one. Until then the new one waits. So the screen never shows a part of a frame.

@@ -1,4 +1,4 @@
-// When frames start, and what is written before: the board's registers, buttons and LEDs.
+// Decides when frames start and what is written before: the board's registers, buttons and LEDs.
 //
 // At power-on it plays the boot list. At the beginning of each vertical blanking it waits until the core is idle, plays
 // the list that the host asked for and the camera's, and starts a frame. A core that is still busy near the end of

@@ -1,5 +1,5 @@
-// What the bus of a board with SDRAM does not have: the words of the SDRAM, and two registers. It stands between the two
-// masters and board_bus, and passes all other accesses on.
+// Adds to the bus of a board with SDRAM what board_bus does not have: the words of the SDRAM, and two registers. It
+// stands between the two masters and board_bus, and passes all other accesses on.
 //
 // A word of the octree memory takes as long as its line takes. Words beyond the memory are dropped, and read as 0. The
 // map has room for 2**21 words: register page says which ones. docs/ecp5_boards.md is the reference.

@@ -1,4 +1,4 @@
-// What is between the clocks and the pins of a board: core, bus, player, frames, serial line, line buffer, screen.
+// Everything between the clocks and the pins of a board: core, bus, player, frames, serial line, line buffer, screen.
 module board_system
   import board_pkg::*;
 #(

@@ -1,5 +1,5 @@
-// What is between the clocks and the pins of a board whose octree and frames are in SDRAM: core, control, SDRAM, frames,
-// screen. The screen shows whole frames at its own rate, whatever a scene costs.
+// Everything between the clocks and the pins of a board whose octree and frames are in SDRAM: core, control, SDRAM,
+// frames, screen. The screen shows whole frames at its own rate, whatever a scene costs.
 //
 // Lines of 32 bytes in the SDRAM: up to 0xEFFFF the octree, word 0 at the end of line 0; from 0xF0000 on two frames, each
 // of 480 rows of 64 lines.

@@ -1,5 +1,5 @@
-// From the core's video stream (rtl/voxrt_pixel_packer.sv) back to pixels of 24 bits, red highest: 3 words, 4 pixels.
-// Widths are multiples of 4 pixels.
+// Turns the core's video stream (rtl/shading/voxrt_pixel_packer.sv) back into pixels of 24 bits, red highest: 3 words
+// give 4 pixels. Widths are multiples of 4 pixels.
 module board_unpacker (
   input  logic        clk_i,
   input  logic        rst_ni,

@@ -1,5 +1,8 @@
 // True dual-port block RAM with output registers: port A reads or writes, port B reads.
 //
+// Use it for a memory that two readers share, or that is too deep for distributed memory, where a word may come two
+// clocks after its address. Synthesis knows such a memory by the way it is written: here that way stands once.
+//
 // Where port B reads a row while port A writes it, the word read is undefined: the lanes work with any word, and what
 // is read later is right. (A simulation reads the old word.)
 module voxrt_block_ram #(

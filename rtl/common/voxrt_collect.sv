@@ -1,5 +1,8 @@
-// Three results of a unit that is used three times per beat, side by side. The unit gets the values of turns 0, 1 and 2;
-// results come Clocks clocks later, and are there Beats beats later, during the whole beat.
+// Puts three results of a shared unit side by side. With RayClocks = 4 one multiplier serves the three axes, so their
+// results come one after the other, but the next stage of a pipeline wants them together and for a whole beat.
+//
+// The unit gets the values of turns 0, 1 and 2; results come Clocks clocks later. Side by side they are there Beats
+// beats after the values, during the whole beat.
 module voxrt_collect #(
   parameter int unsigned Width  = 8,  // Bits: 1 or more.
   parameter int unsigned Clocks = 2,  // Of the unit, from its values to their result: 2 or 3.

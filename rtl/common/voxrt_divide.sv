@@ -1,5 +1,8 @@
-// Quotient of QuotientBits bits, one per stage: dividend / divisor rounded down, exact; one per clock. The quotient
-// must fit, that is dividend < divisor * 2**QuotientBits.
+// A pipeline that divides: dividend / divisor, rounded down, exact, one quotient per clock. It has a stage per bit of
+// the quotient, which must fit: dividend < divisor * 2**QuotientBits.
+//
+// Use it where a division may start at every clock. For a division now and then, a loop of one stage is smaller, as in
+// voxrt_hit_point.
 //
 // Non-restoring: a stage adds the divisor to the remainder when that is negative, and subtracts it otherwise, in one
 // adder. The bit is 1 where the result is not negative.

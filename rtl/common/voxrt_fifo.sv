@@ -1,4 +1,9 @@
-// First in, first out, of any depth that is a power of two. Data in distributed memory, read combinationally.
+// A queue between two modules that work at different times: first in, first out.
+//
+// Use it where a writer must go on while the reader waits. valid_o and ready_o depend on registers alone, so it also
+// cuts the paths of both in two, forwards for valid and backwards for ready. Its data are in distributed memory and are
+// read in the same clock, so it suits some dozens of words; more belong into voxrt_block_ram. A queue of one word is
+// voxrt_stream_register.
 `include "voxrt_assert.svh"
 
 module voxrt_fifo #(

@@ -1,6 +1,9 @@
-// The rows of a memory that are free: rows are allocated one by one and freed in any order. After a reset all are free.
+// Gives out the rows of a memory and takes them back in any order. After a reset all rows are free.
 //
-// Nobody allocates more rows than there are: the list of freed rows is as long as the memory, and is not read before
+// Use it where the entries of a memory live for different times: the weights of a ray stay until the ray leaves its
+// lane, and rays leave in another order than they came. A counter is enough where entries leave in order.
+//
+// Nobody allocates more rows than there are. So the list of freed rows is as long as the memory, and is not read before
 // each row has been allocated once.
 `include "voxrt_assert.svh"
 

@@ -1,9 +1,11 @@
 // The product of two whole numbers, two clocks later.
 //
-// Cut to the multipliers of the part (voxrt_pkg::MultiplierBits). 25 x 18: the lowest LogicBits bits of a are
-// multiplied in logic, and all others left to synthesis, which cascades DSP slices of 7-series parts and moves both
-// registers and the sum into them; a few bits in logic may spare a slice. 18 x 18: in parts, with a register behind
-// each multiplier and one behind their sum.
+// Use it for each product that is wider than a multiplier of the part: how a product is cut into multipliers decides
+// the clock and the number of DSP slices, and stands here once. voxrt_pkg::MultiplierBits says what the part has.
+//
+// 25 x 18: the lowest LogicBits bits of a are multiplied in logic, and all others left to synthesis, which cascades DSP
+// slices of 7-series parts and moves both registers and the sum into them; a few bits in logic may spare a slice. 18 x
+// 18: in parts, with a register behind each multiplier and one behind their sum.
 module voxrt_multiply
   import voxrt_pkg::*;
 #(

@@ -1,9 +1,10 @@
 // The time at which a ray crosses a plane: distance * weight, exact, three clocks later.
 //
-// Cut to the multipliers of the part (voxrt_pkg::MultiplierBits). 25 x 18: each half is one DSP slice of a 7-series
-// part, and the sum is the second one's adder, 17 bits up, as the slices are cascaded. 18 x 18: three parts of the weight
-// and up to two of the distance, with a register right behind each multiplier, since the paths to and from multipliers
-// are long.
+// It is no voxrt_multiply because the distance has a sign, and because this product is the longest path of a lane: here
+// each multiplier has a register right behind it. voxrt_pkg::MultiplierBits says what the part has.
+//
+// 25 x 18: each half is one DSP slice of a 7-series part, and the sum is the second one's adder, 17 bits up, as the
+// slices are cascaded. 18 x 18: three parts of the weight and up to two of the distance.
 module voxrt_plane_time
   import voxrt_pkg::*;
 #(

@@ -1,5 +1,9 @@
-// A register in a stream: valid_o and data_o come from flip-flops. One transfer per clock. ready_o depends on ready_i in
-// the same clock; with CutsReady it comes from a flip-flop too, and a second register holds what comes meanwhile.
+// A register in a stream of valid and ready, for one transfer per clock.
+//
+// Use it to cut a path that is too long: valid_o and data_o come from flip-flops. Without CutsReady, ready_o still
+// depends on ready_i in the same clock, so a row of such registers has one path of ready through all of them. With
+// CutsReady, ready_o comes from a flip-flop too, and a second register holds what comes before the sender sees it: a
+// skid buffer, which takes twice the flip-flops. For more places than these, use voxrt_fifo.
 `include "voxrt_assert.svh"
 
 module voxrt_stream_register #(

@@ -1,5 +1,6 @@
-// The times at which a ray crosses a plane of each axis: each by a unit of its own, three clocks later; or all by one
-// (RayClocks = 4), three beats later. Values stay for a beat (voxrt_turns).
+// The times at which a ray crosses a plane of each axis. With RayClocks = 1 each axis has a unit of its own, and times
+// come three clocks later. With RayClocks = 4 one unit serves all, for parts with few multipliers, and times come three
+// beats later. Values stay for a beat (voxrt_turns).
 module voxrt_three_plane_times
   import voxrt_pkg::*;
 #(

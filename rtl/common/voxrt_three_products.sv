@@ -1,5 +1,6 @@
-// Three products of whole numbers: each by a multiplier of its own, two clocks later; or all by one (RayClocks = 4), two
-// beats later. Values stay for a beat (voxrt_turns).
+// Three products of whole numbers. With RayClocks = 1 each has a multiplier of its own, and they come two clocks later.
+// With RayClocks = 4 one multiplier makes all, for parts with few of them, and they come two beats later. Values stay
+// for a beat (voxrt_turns).
 module voxrt_three_products #(
   parameter int unsigned RayClocks = 1,
   parameter int unsigned ABits = 20,  // As voxrt_multiply has them.

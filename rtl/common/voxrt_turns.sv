@@ -1,5 +1,6 @@
-// The turns of a beat, for units that share a multiplier (RayClocks = 4): turn_o is 0 to 3, and pipelines move at the
-// clock edge after the last one. With RayClocks = 1 they move at every clock.
+// The clock of pipelines whose units share a multiplier (RayClocks = 4): a beat has four turns. turn_o, 0 to 3, says
+// whose value the unit takes, and the pipeline moves at the clock edge after the last turn. With RayClocks = 1 each
+// clock is a beat.
 module voxrt_turns #(
   parameter int unsigned RayClocks = 1  // Clocks per beat: 1 or 4.
 ) (

@@ -1,7 +1,8 @@
-// A lane, the queue of its rays, and the reorder buffer of its pixels.
+// A lane with the queue of its rays before it and the reorder buffer of its pixels behind it. The ring of a lane never
+// stops, and its rays end in another order than they came: these two make it a module with a stream on either side.
 //
-// Credits: issue_i, only where credit_o was high, reserves a place in the queue for a ray of the camera, which comes some
-// clocks later. Shadow rays have a queue of their own, whose places voxrt_light counts.
+// Credits: issue_i, only where credit_o was high, reserves a place in the queue for a ray of the camera, which comes
+// some clocks later. Shadow rays have a queue of their own, whose places voxrt_light counts.
 `include "voxrt_assert.svh"
 
 module voxrt_buffered_lane

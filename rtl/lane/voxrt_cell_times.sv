@@ -1,5 +1,6 @@
-// When a ray crosses three planes of its cell: T, stages 1 to 5 of voxrt_lane. Far planes, middle ones, or, where it
-// hits, near ones, one per axis; modulo 2**KeyBits.
+// When a ray crosses three planes of its cell, one per axis: T modulo 2**KeyBits. These are stages 1 to 5 of
+// voxrt_lane. The planes are the far ones of a leaf, the middle ones of a pointer's cell, or the near ones of a leaf
+// that is hit.
 //
 // Distances from origins to planes come from the camera's origin, which all rays share, or, with Light or Mirrors, from
 // an origin per ray: reflections move it, and shadow rays start at a hit point and count 1/32 voxel.

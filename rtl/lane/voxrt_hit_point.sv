@@ -1,5 +1,6 @@
-// The hit point of a camera's ray: in which of the sub-cells of 1/16 voxel of its leaf it is. Beside the ring of
-// voxrt_lane, so that the ring's slot is free for another ray.
+// The hit point of a camera's ray: in which of the sub-cells of 1/16 voxel of its leaf it is. This needs a division,
+// which takes longer than a turn of the ring. So it is done beside the ring of voxrt_lane, and the slot is free for
+// another ray.
 //
 // On each axis the ray has crossed the planes whose keys (T, axis) are at most its own. T grows by the weight from a
 // plane to the next, so their number behind the leaf's near plane is floor(since / weight), where since is the ray's T

@@ -1,4 +1,5 @@
-// Level of detail: which rays stop at the cell of a pointer and show its mean material. Stages 2 to 5 of voxrt_lane.
+// Level of detail: tells which rays stop at the cell of a pointer and show its mean material. Far cells are smaller
+// than a pixel, and their words need not be read. These are stages 2 to 5 of voxrt_lane.
 //
 // A ray stops at a cell of 2**level voxels per side where the cell is at a distance of reach * 2**level or more: the
 // greatest along an axis from the ray's origin to the cell's near plane, voxels, rounded down. docs/lod.md says why.

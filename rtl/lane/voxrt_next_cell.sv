@@ -1,5 +1,5 @@
-// From the times of a cell's planes to the cell that follows: stages 6 to 10 of voxrt_lane, whose table says what each
-// does. Times are modulo 2**KeyBits; sizes are one-hot.
+// Finds the cell that follows from the times of a cell's planes: stages 6 to 10 of voxrt_lane, whose table says what
+// each does. Times are modulo 2**KeyBits; sizes are one-hot.
 //
 // The next corner is the old one with one bit set, that of the next size:
 //   Descend   size / 2, on the axes whose middle plane is behind

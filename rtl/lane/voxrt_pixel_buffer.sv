@@ -1,5 +1,5 @@
-// Reorder buffer of a lane's pixels: an entry is allocated when a ray is issued, completed when the pixel is known, and
-// read in order of allocation.
+// Reorder buffer of a lane's pixels. Rays of a lane end in any order, but voxrt_merge wants pixels in order: an entry
+// is allocated when a ray is issued, completed when the pixel is known, and read in order of allocation.
 //
 // Entries are in block RAM, read ahead of time, in order, two clocks long. An entry is complete when its phase bit is
 // that of the reader; else it was read too early, and reading starts again from there. Nothing but the phase bits needs

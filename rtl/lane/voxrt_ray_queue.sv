@@ -1,5 +1,8 @@
-// Two queues in one memory, whose depth distributed memory has anyway: rays of the camera, and shadow rays, which
-// leave first. A ray comes only when its queue has a place: both queues' writers hold credits, so none is refused.
+// The queue of a lane with light: rays of the camera, and shadow rays, which leave first. Shadow rays must pass the
+// others, or rays would wait for each other in a circle.
+//
+// Both queues are halves of one memory, because a distributed memory is deep enough for both. A ray comes only when its
+// queue has a place: the writers hold credits, so none is refused.
 `include "voxrt_assert.svh"
 
 module voxrt_ray_queue #(

@@ -1,4 +1,4 @@
-// Mirrors, for one lane: which hits are reflected, and the sum of the colours of the mirrors that a ray has met.
+// The mirrors of a lane: tells which hits are reflected, and sums the colours of the mirrors that a ray has met.
 //
 // A ray that has been reflected as often as the frame allows shows the mean of its mirrors. So their sum and count are
 // kept per slot, and the lane has a copy of the material table of its own: one lookup per hit, in half a block RAM, at

@@ -1,5 +1,5 @@
-// Schedules the slots of voxrt_lane: stage 9. A ray that is done is reflected, goes to voxrt_hit_point, or retires; where
-// one goes or retires, a new ray is issued to the slot.
+// Schedules the slots of voxrt_lane at stage 9. A ray that is done is reflected, goes to voxrt_hit_point, or retires.
+// When a ray goes or retires, a new one is issued to its slot.
 //
 // Mirrors: a ray that hits one starts again at the root in its slot, with the key of the hit, the mirror bit of that
 // axis flipped and the origin moved by 16 (side - 2 plane), so that the plane's T stays; it is in the cell that it

@@ -1,4 +1,5 @@
-// Reads lines of 32 bytes by AXI4: bursts of 4 beats of 64 bits, in order, one id, so many under way at a time.
+// Reads lines of 32 bytes by AXI4: bursts of 4 beats of 64 bits, in order, with one id, and up to UnderWay of them at a
+// time. It knows nothing of octrees: any module that reads lines from a bus may use it.
 //
 // Each request is answered once, in order. After an error of the bus (SLVERR, DECERR), or 2**TimeoutBits clocks without
 // an answer, all requests are answered as failed at once, without the bus, until recover_i. What the bus still owes is

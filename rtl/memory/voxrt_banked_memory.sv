@@ -1,6 +1,7 @@
-// The octree memory once for all lanes, in sixteen banks of dual-port block RAM. The words of a block are in different
-// banks, those of blocks that are 16 apart in different orders, so that lanes near the root do not all want one bank:
-// word {row, bank ^ lowest bits of row}.
+// The octree memory once for all lanes, in sixteen banks of dual-port block RAM: for scenes that would not fit the
+// block RAM in a copy per two lanes. The words of a block are in different banks, those of blocks that are 16 apart in
+// different orders, so that lanes near the root do not all want one bank: a bank's row holds the word {row, bank ^
+// lowest bits of row}.
 //
 // The first 256 blocks, which is the octree's top where blocks are ordered breadth-first, are in private copies as
 // well, a RAMB36 per two lanes: near the root, where all rays pass, lanes do not meet. Of a Menger sponge of 128 voxels

@@ -1,5 +1,6 @@
-// Lines on their way into the caches of a few lanes (voxrt_l1_cache): whole lines come in at any clock, two words per
-// clock go out, in order. A line may go to several of the lanes at once.
+// Lines on their way into the caches of a few lanes (voxrt_l1_cache). The L2 gives a whole line at once, but a cache
+// writes two words per clock: so whole lines come in at any clock, and two words per clock go out, in order. A line may
+// go to several of the lanes at once.
 `include "voxrt_assert.svh"
 
 module voxrt_line_queue #(

@@ -1,4 +1,5 @@
-// The lines that voxrt_l2_cache waits for, in the order in which they are fetched and come; and which lanes want each.
+// The lines that voxrt_l2_cache waits for, in the order in which they are fetched and come, and which lanes want each.
+// With it, lookups go on while lines are on their way, and a line that many lanes want is fetched once.
 //
 // A miss, per pipe, joins the entry of its line, or gets one: at most one new entry per clock, for which the pipes take
 // turns. The lines of all entries are compared a clock before the miss is known, which makes a long path shorter. An

@@ -1,5 +1,5 @@
-// The octree memory in block RAM: word 0 in a register, all other words in one of two forms, an access port that writes and reads
-// it, and a read port per lane.
+// The octree memory in block RAM. Word 0 is in a register, all other words are in one of two forms. An access port
+// writes and reads all words, and each lane has a read port.
 //
 // Forms: private copies (voxrt_private_memory), one per two lanes; or one memory in banks (voxrt_banked_memory), for
 // scenes that would not fit twice.

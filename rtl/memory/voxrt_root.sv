@@ -1,5 +1,6 @@
-// The root word of a frame: from word 0, where that is in a register, or from anywhere else in the memory, by the read port
-// of lane 0, which is idle before the frame.
+// Reads the root word of a frame, before the frame's rays: from word 0, where that is in a register, or from anywhere
+// else in the memory, by the read port of lane 0, which is idle then. With it a scene may stand anywhere, and a frame
+// may show another one by a register.
 //
 // start_i takes the address; valid_o is high for one clock, with root_o from then on. An address beyond the memory
 // gives a leaf with an error, as a bad pointer does.

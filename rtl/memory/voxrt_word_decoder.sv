@@ -1,4 +1,5 @@
-// The dialect again, of a word that voxrt_word_encoder encoded. All pointers that were refused come out as 0x7FFFFFFF.
+// Gives a word that voxrt_word_encoder has encoded in its dialect again, so that the processor reads what it wrote. All
+// pointers that were refused come out as voxrt_pkg::RefusedWord.
 module voxrt_word_decoder
   import voxrt_pkg::*;
 #(

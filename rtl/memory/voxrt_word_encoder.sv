@@ -1,5 +1,5 @@
-// A memory word of the report dialect, or of the dialect lod, in the form that the lanes read (see
-// voxrt_pkg::payload_bits): a pointer is checked here, once, and not in every lane.
+// Gives a memory word of the report dialect, or of the dialect lod, the form that the lanes read (voxrt_pkg::leaf_t).
+// It checks a pointer once, when the word is written or fetched, so that no lane needs to check it at each read.
 module voxrt_word_encoder
   import voxrt_pkg::*;
 #(

@@ -1,4 +1,4 @@
-// What a frame has cost and met. All counters hold between frames.
+// Counts what a frame costs, and notes what errors it meets. All counters hold between frames, for the registers.
 module voxrt_counters
   import voxrt_pkg::*;
 #(

@@ -1,4 +1,5 @@
-// Latches a frame at its start, makes its values legal, and derives its world.
+// Latches a frame at its start, makes its values legal, and derives its world. So registers may be written during a
+// frame, and no other module needs to check a value.
 //
 // Width, height and depth 0 count as 1, depths above MaxDepth as MaxDepth. Of positions PositionBits bits count. A
 // feature that is not built in is off.

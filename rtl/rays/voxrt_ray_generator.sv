@@ -1,4 +1,5 @@
-// Directions of a frame's pixels, row by row from the top left, by additions alone:
+// Directions of a frame's pixels, row by row from the top left. It needs additions alone, because neighbours differ by
+// a constant:
 //   direction(column, row) = look + right * (column - width/2) + up * (height/2 - row)
 //
 // raster_i.start starts voxrt_scan too, which gives corner and line_step. Right, width and height must hold while

@@ -1,5 +1,5 @@
-// From a direction to a ray that a lane can trace: mirrored, weighed, and entered into the world. One ray per RayClocks
-// clocks, when ready_o is high.
+// Makes a ray that a lane can trace of a direction: mirrored, weighed, and entered into the world. One setup serves all
+// lanes, with one ray per RayClocks clocks, when ready_o is high.
 //
 // The weight of an axis is the product of the other two components (0 counts as 1), so that the plane p is crossed at
 // T = (16 p - origin) * weight, an integer. Planes are ordered by (T, axis). The entry key is the last of the world's

@@ -1,6 +1,7 @@
-// The start values of both ray generators of a frame: the direction of its top left pixel
+// Computes the start values of both ray generators of a frame: the direction of its top left pixel
 //   look - right * (width/2) + up * (height/2)
-// bit by bit from the highest, and the step from line to line, -up. One adder per axis.
+// bit by bit from the highest, and the step from line to line, -up. One adder per axis is enough, because this happens
+// once per frame.
 //
 // Look, right and up must hold from start_i on, during the frame. corner_o comes 2 * SizeBits + 1 clocks after start_i;
 // with it, line_step_o is the direction of the top left pixel. Two clocks later it is the step.

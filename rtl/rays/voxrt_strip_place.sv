@@ -1,4 +1,6 @@
-// Walks the pixels of a frame strip by strip. Strips have 2**strip_line_bits(Lanes, width) lines, the last one what is
+// Walks the pixels of a frame strip by strip, for cores with caches: pixels that follow each other are then neighbours,
+// whose rays read the same lines of the octree. voxrt_strip_generator walks so when it issues rays, voxrt_strip_buffer
+// when it puts the pixels back into lines. Strips have 2**strip_line_bits(Lanes, width) lines, the last one what is
 // left. The order in a strip is
 //
 //   ByLines      line by line, each from the left

@@ -1,5 +1,6 @@
-// The brightness of pixels that are not shaded by the ray's own angle: mirrors' means, faces, light and shadow. For
-// the shader, with f the brightness of the face and m the ambient value:
+// The brightness of pixels that are not shaded by the ray's own angle: means of mirrors, faces, light and shadow. It
+// stands before the shader only in cores that have such a feature. It gives, with f the brightness of the face and m
+// the ambient value:
 //
 //   mean                sum of colours * 1 / count
 //   by face             colour * f / 255, also where it is lit; flat: f = 255

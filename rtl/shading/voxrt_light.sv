@@ -1,4 +1,5 @@
-// From hit points of the camera's rays to shadow rays, for all lanes; and where the light is among the planes.
+// Makes shadow rays of the hit points of the camera's rays, for all lanes, and finds where the light is among the
+// planes.
 //
 // Lanes are served in turn: once per Lanes clocks is enough for a lane, whose rays read a dozen words between two hit
 // points. A lane has at most QueueDepth shadow rays under way, from its claim until it issues the ray (issued_i): it may

@@ -1,6 +1,6 @@
-// From a hit point to the point that is lit and the direction from there to the light, both exact:
+// Gives, for a hit point, the point that is lit and the direction from there to the light, both exact:
 //   H_a = 32 p on the axis of the face, H_b = 2 h_b + 1 on the others      D = 2 L - H
-// Both after two clocks in which enable_i is high.
+// Both come after two clocks in which enable_i is high.
 module voxrt_light_direction
   import voxrt_pkg::*;
 #(

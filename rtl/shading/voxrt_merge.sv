@@ -1,4 +1,7 @@
-// Pixels of all lanes in pixel order: lane i has the pixels i mod Lanes.
+// Merges the pixels of all lanes into one stream in pixel order. Lane i has the pixels i mod Lanes, and gives them in
+// order: so a counter that goes round is enough to choose, and no pixel carries its number.
+//
+// Use it where streams were dealt out in turn and each has kept its order.
 `include "voxrt_assert.svh"
 
 module voxrt_merge #(

@@ -1,5 +1,6 @@
-// Pixels of 24 bits into words of 32 bits as AXI4-Stream video: 4 pixels in 3 words. The lowest byte of a word is the
-// first; the order of a pixel's bytes is green, blue, red:
+// Packs pixels of 24 bits into words of 32 bits as AXI4-Stream video: 4 pixels in 3 words. A VDMA writes such words
+// into a frame buffer without gaps. The lowest byte of a word is the first; the order of a pixel's bytes is green,
+// blue, red:
 //
 //   word     31:24  23:16  15:8   7:0
 //   0        G1     R0     B0     G0

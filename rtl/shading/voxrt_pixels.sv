@@ -1,5 +1,5 @@
-// From the lanes' pixels to colours in pixel order: merge, strip buffer where rays are issued in strips, brightness where
-// a feature needs it, shader.
+// Makes a stream of colours in pixel order of the pixels of the lanes: merge, strip buffer where rays are issued in
+// strips, brightness where a feature needs it, shader.
 module voxrt_pixels
   import voxrt_pkg::*;
 #(

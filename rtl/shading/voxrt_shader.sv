@@ -1,4 +1,4 @@
-// From materials and faces to colours, exact to the last bit, one pixel per RayClocks clocks:
+// Computes colours from materials and faces, exact to the last bit, one pixel per RayClocks clocks:
 //   colour = round half up (c * part / whole)
 //   by face             the face's brightness / 255; flat: 255 / 255
 //   by angle            d_a**2 / |d|**2, a the axis crossed, d the ray's direction: the report's perceptual curve

@@ -1,5 +1,5 @@
-// Pixels that come in strips, as voxrt_strip_generator orders them, go out line by line. While one strip is written, the
-// one before is read: two strips of at most 2**strip_bits(Lanes) pixels.
+// Turns strips into lines: pixels come in the order of voxrt_strip_generator, and go out line by line, as video wants
+// them. While one strip is written, the one before is read: two strips of at most 2**strip_bits(Lanes) pixels.
 module voxrt_strip_buffer
   import voxrt_pkg::*;
 #(
