@@ -176,16 +176,16 @@ module voxrt_core
     assign frame.light[a]    = control.light[a].value.value;
   end
 
-  assign frame.memory_base     = {control.memory_base.address.value, 5'd0};
-  assign frame.lod_words       = control.lod.words.value;
-  assign frame.lod_scale       = control.lod.scale.value;
-  assign frame.width           = control.size.width.value;
-  assign frame.height          = control.size.height.value;
-  assign frame.depth           = control.depth.depth.value;
-  assign frame.root            = control.root.address.value;
-  assign frame.shading.flat    = control.shading.flat.value;
-  assign frame.shading.faces   = control.shading.faces.value;
-  assign frame.shading.light   = control.shading.light.value;
+  assign frame.memory_base = {control.memory_base.address.value, 5'd0};
+  assign frame.lod_words = control.lod.words.value;
+  assign frame.lod_scale = control.lod.scale.value;
+  assign frame.width = control.size.width.value;
+  assign frame.height = control.size.height.value;
+  assign frame.depth = control.depth.depth.value;
+  assign frame.root = control.root.address.value;
+  assign frame.shading.flat = control.shading.flat.value;
+  assign frame.shading.faces = control.shading.faces.value;
+  assign frame.shading.light = control.shading.light.value;
   assign frame.shading.ambient = control.shading.ambient.value;
   assign frame.shading.bounces = control.shading.bounces.value;
 
@@ -207,12 +207,12 @@ module voxrt_core
   axi_read_request_t axi_request[BusPorts];
   axi_read_response_t axi_response[BusPorts];
 
-  assign m_axi0_arvalid  = axi_request[0].arvalid;
-  assign m_axi0_araddr   = axi_request[0].araddr;
-  assign m_axi0_rready   = axi_request[0].rready;
-  assign m_axi1_arvalid  = axi_request[1].arvalid;
-  assign m_axi1_araddr   = axi_request[1].araddr;
-  assign m_axi1_rready   = axi_request[1].rready;
+  assign m_axi0_arvalid = axi_request[0].arvalid;
+  assign m_axi0_araddr = axi_request[0].araddr;
+  assign m_axi0_rready = axi_request[0].rready;
+  assign m_axi1_arvalid = axi_request[1].arvalid;
+  assign m_axi1_araddr = axi_request[1].araddr;
+  assign m_axi1_rready = axi_request[1].rready;
   // 4 beats of 8 bytes, at rising addresses; bufferable and modifiable; data, secure, unprivileged.
   assign {m_axi0_arlen, m_axi0_arsize, m_axi0_arburst, m_axi0_arcache, m_axi0_arprot} = {8'd3, 3'd3, 2'd1, 4'd3, 3'd0};
   assign {m_axi1_arlen, m_axi1_arsize, m_axi1_arburst, m_axi1_arcache, m_axi1_arprot} = {8'd3, 3'd3, 2'd1, 4'd3, 3'd0};

@@ -31,11 +31,11 @@ module board_frame_writer
   assign word          = s_axis_tuser ? 3'd0 : word_q;
   assign beyond        = line_q[6] || row_q >= 9'(Rows);
 
-  assign valid_o = full_q && !beyond;
-  assign line_o  = {4'hF, frame_q, row_q, line_q[5:0]};
-  assign mask_o  = mask_q;
+  assign valid_o       = full_q && !beyond;
+  assign line_o        = {4'hF, frame_q, row_q, line_q[5:0]};
+  assign mask_o        = mask_q;
   // Ports that do not write bring zeros.
-  assign data_o  = full_q ? data_q : '0;
+  assign data_o        = full_q ? data_q : '0;
 
   always_ff @(posedge clk_i) begin
     if (accepts) begin

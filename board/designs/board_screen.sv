@@ -27,9 +27,9 @@ module board_screen
       column_q <= '0;
       row_q    <= 10'(Rows);
     end
-    visible_q <= {visible_q[Clocks-2:0], column_q < 10'(Columns) && row_q < 10'(Rows)};
-    hsync_q   <= {hsync_q[Clocks-2:0], !(column_q >= 10'(ColumnSyncBegin) && column_q < 10'(ColumnSyncEnd))};
-    vsync_q   <= {vsync_q[Clocks-2:0], !(row_q >= 10'(RowSyncBegin) && row_q < 10'(RowSyncEnd))};
+    visible_q   <= {visible_q[Clocks-2:0], column_q < 10'(Columns) && row_q < 10'(Rows)};
+    hsync_q     <= {hsync_q[Clocks-2:0], !(column_q >= 10'(ColumnSyncBegin) && column_q < 10'(ColumnSyncEnd))};
+    vsync_q     <= {vsync_q[Clocks-2:0], !(row_q >= 10'(RowSyncBegin) && row_q < 10'(RowSyncEnd))};
     // The next row is announced behind the visible part of this one.
     row_begin_o <= rst_ni && column_q == 10'(ColumnSyncEnd);
     row_o       <= row_q == 10'(RowsTotal - 1) ? '0 : row_q + 1'b1;

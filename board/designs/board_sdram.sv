@@ -103,7 +103,7 @@ module board_sdram #(
   logic [1:0] next_bank;
 
   assign next_bank = next_line_q[1:0];
-  assign second    = streams_q && step_q == 4'd7;
+  assign second = streams_q && step_q == 4'd7;
   assign starts    = next_valid_q && next_open_q && row_wait_q == '0 && (!streams_q || step_q == 4'd15) &&
       (!next_write_q || turn_q == '0);
   assign opens     = next_valid_q && !next_open_q && !second && !open_q[next_bank] && closes_q[next_bank] == '0 &&
@@ -201,9 +201,9 @@ module board_sdram #(
           sdram_dqm_o    <= next_write_q ? {2{!next_mask_q[0]}} : '0;
           if (!next_write_q) turn_q <= ReadToWrite;
         end else if (second) begin
-          command_q             <= write_q ? Write : Read;
-          sdram_ba_o            <= place_q[1:0];
-          sdram_a_o             <= {2'b00, 1'b1, 1'b0, place_q[6:2], 1'b1, 3'd0};
+          command_q              <= write_q ? Write : Read;
+          sdram_ba_o             <= place_q[1:0];
+          sdram_a_o              <= {2'b00, 1'b1, 1'b0, place_q[6:2], 1'b1, 3'd0};
           open_q[place_q[1:0]]   <= 1'b0;
           closes_q[place_q[1:0]] <= write_q ? CloseAfterWrite : CloseAfterRead;
         end else if (opens) begin

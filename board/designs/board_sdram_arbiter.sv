@@ -59,9 +59,9 @@ module board_sdram_arbiter #(
   end
 
   always_comb begin
-    ready_o                  = '0;
-    ready_o[next]            = request_ready_i && request_valid_o;
-    done_o                   = '0;
+    ready_o                   = '0;
+    ready_o[next]             = request_ready_i && request_valid_o;
+    done_o                    = '0;
     done_o[owners_q[first_q]] = done_i;
   end
 

@@ -29,8 +29,8 @@ module voxrt_divide #(
   logic [DivisorBits-1:0] divisor[QuotientBits+1];
 
   assign {remainder[0], bits[0]} = {1'b0, dividend_i};
-  assign divisor[0]                = divisor_i;
-  assign quotient_o                = bits[QuotientBits];
+  assign divisor[0]              = divisor_i;
+  assign quotient_o              = bits[QuotientBits];
 
   for (genvar s = 0; s < QuotientBits; s++) begin : gen_bit
     logic subtracts, carry;
@@ -55,6 +55,6 @@ module voxrt_divide #(
     assign unused         = carry;
     assign remainder[s+1] = remainder_q;
     assign divisor[s+1]   = divisor_q;
-    assign bits[s+1]    = bits_q;
+    assign bits[s+1]      = bits_q;
   end
 endmodule

@@ -41,13 +41,13 @@ module voxrt_lane_coverage
     for (int unsigned i = 0; i <= MaxDepth; i++) if (size[i]) level_of |= 5'(i);
   endfunction
 
-  assign sum      = {1'b0, coordinate_i} + {1'b0, size_i};
+  assign sum = {1'b0, coordinate_i} + {1'b0, size_i};
   assign ancestor = sum & ~{1'b0, coordinate_i};
-  assign outside  = (sum & side_i) != '0;
-  assign level    = 4'(level_of({1'b0, size_i}));
-  assign climbed  = 4'(level_of(ancestor) - level_of({1'b0, size_i}));
-  assign leaves   = active_i && leave_i && dead_i != '1;
-  assign hits     = active_i && finish_i && material_i != '0;
+  assign outside = (sum & side_i) != '0;
+  assign level = 4'(level_of({1'b0, size_i}));
+  assign climbed = 4'(level_of(ancestor) - level_of({1'b0, size_i}));
+  assign leaves = active_i && leave_i && dead_i != '1;
+  assign hits = active_i && finish_i && material_i != '0;
   assign descends = active_i && descend_i;
 
   // Planes that are crossed at the same time: z and x, y and z, x and y.

@@ -92,8 +92,8 @@ module voxrt_pixel_buffer_properties #(
     end
     if (valid_o && ready_i) read_q <= read_q + 1'b1;
     if (!rst_ni) begin
-      allocated_q  <= '0;
-      read_q  <= '0;
+      allocated_q <= '0;
+      read_q <= '0;
       completed_q <= 1'b0;
       stored_q <= 1'b0;
     end

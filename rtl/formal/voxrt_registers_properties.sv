@@ -36,24 +36,24 @@ module voxrt_registers_properties
   end
 
   always_comb begin
-    hwif_in.configuration.lanes.next          = status_bits[7:0];
-    hwif_in.configuration.max_depth.next      = status_bits[12:8];
-    hwif_in.configuration.position_bits.next  = status_bits[18:13];
-    hwif_in.configuration.block_bits.next     = status_bits[23:19];
-    hwif_in.configuration.banked.next         = status_bits[24];
-    hwif_in.status.busy.next                  = status_bits[25];
-    hwif_in.status.frame_done.hwset           = status_bits[26];
-    hwif_in.status.direction_overflow.hwset   = status_bits[27];
-    hwif_in.status.bad_pointer.hwset          = status_bits[28];
-    hwif_in.status.step_limit.hwset           = status_bits[29];
-    hwif_in.cycles.value.next                 = table_word;
-    hwif_in.rays.value.next                   = table_word;
-    hwif_in.words_read.value.next             = table_word;
-    hwif_in.hits.value.next                   = table_word;
-    hwif_in.stalls.value.next                 = table_word;
-    hwif_in.materials.rd_ack                  = table_reads_q;
-    hwif_in.materials.rd_data                 = table_word;
-    hwif_in.materials.wr_ack                  = table_writes_q;
+    hwif_in.configuration.lanes.next         = status_bits[7:0];
+    hwif_in.configuration.max_depth.next     = status_bits[12:8];
+    hwif_in.configuration.position_bits.next = status_bits[18:13];
+    hwif_in.configuration.block_bits.next    = status_bits[23:19];
+    hwif_in.configuration.banked.next        = status_bits[24];
+    hwif_in.status.busy.next                 = status_bits[25];
+    hwif_in.status.frame_done.hwset          = status_bits[26];
+    hwif_in.status.direction_overflow.hwset  = status_bits[27];
+    hwif_in.status.bad_pointer.hwset         = status_bits[28];
+    hwif_in.status.step_limit.hwset          = status_bits[29];
+    hwif_in.cycles.value.next                = table_word;
+    hwif_in.rays.value.next                  = table_word;
+    hwif_in.words_read.value.next            = table_word;
+    hwif_in.hits.value.next                  = table_word;
+    hwif_in.stalls.value.next                = table_word;
+    hwif_in.materials.rd_ack                 = table_reads_q;
+    hwif_in.materials.rd_data                = table_word;
+    hwif_in.materials.wr_ack                 = table_writes_q;
   end
 
   voxrt_registers dut (
@@ -94,11 +94,11 @@ module voxrt_registers_properties
   logic [3:0] wstrb_q;
   logic [1:0] bresp_q, rresp_q;
   always_ff @(posedge clk_i) begin
-    {awvalid_q, awready_q, awaddr_q}          <= {awvalid, awready, awaddr};
-    {wvalid_q, wready_q, wdata_q, wstrb_q}    <= {wvalid, wready, wdata, wstrb};
-    {arvalid_q, arready_q, araddr_q}          <= {arvalid, arready, araddr};
-    {bvalid_q, bready_q, bresp_q}             <= {bvalid, bready, bresp};
-    {rvalid_q, rready_q, rdata_q, rresp_q}    <= {rvalid, rready, rdata, rresp};
+    {awvalid_q, awready_q, awaddr_q}       <= {awvalid, awready, awaddr};
+    {wvalid_q, wready_q, wdata_q, wstrb_q} <= {wvalid, wready, wdata, wstrb};
+    {arvalid_q, arready_q, araddr_q}       <= {arvalid, arready, araddr};
+    {bvalid_q, bready_q, bresp_q}          <= {bvalid, bready, bresp};
+    {rvalid_q, rready_q, rdata_q, rresp_q} <= {rvalid, rready, rdata, rresp};
     if (!rst_ni) {awvalid_q, wvalid_q, arvalid_q, bvalid_q, rvalid_q} <= '0;
   end
 

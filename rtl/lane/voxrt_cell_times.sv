@@ -69,13 +69,13 @@ module voxrt_cell_times
     assign unused_shared = &{world_i, mirrored1_i};
     assign near2_o       = '{default: '0};
 
-    assign planes = decision_i.shift[MaxDepth+1:0];
-    assign shift  = Mirrors ? DistanceBits'(planes) <<< FractionBits : '0;
+    assign planes        = decision_i.shift[MaxDepth+1:0];
+    assign shift         = Mirrors ? DistanceBits'(planes) <<< FractionBits : '0;
 
-    assign origin1[0] = origin_x_q[slot1_i];
-    assign origin1[1] = origin_y_q[slot1_i];
-    assign origin1[2] = origin_z_q[slot1_i];
-    assign step2      = takes_near2_i ? '0 : (DistanceBits'(size2_i) << FractionBits) >> !takes_far2_i;
+    assign origin1[0]    = origin_x_q[slot1_i];
+    assign origin1[1]    = origin_y_q[slot1_i];
+    assign origin1[2]    = origin_z_q[slot1_i];
+    assign step2         = takes_near2_i ? '0 : (DistanceBits'(size2_i) << FractionBits) >> !takes_far2_i;
 
     always_comb begin
       for (int unsigned a = 0; a < 3; a++) begin
@@ -104,7 +104,7 @@ module voxrt_cell_times
     logic [FractionBits-1:0] fraction2_q[3];
     logic unused_origin;
 
-    assign near2_o       = near2_q;
+    assign near2_o = near2_q;
     assign unused_origin = &{ray_origin_i, shadow1_i, shadow2_i, takes_near2_i, slot1_i, slot9_i, decision_i,
                              key_face_i};
 

@@ -401,12 +401,12 @@ module voxrt_lane
   assign hit_point_valid_o = point_valid && point_ready;
   assign hit_point_o       = point;
 
-  assign row_free_o.valid = decision.bypasses || ((step9.done || step9.continues) && !decision.keeps);
-  assign row_free_o.row   = RowLimit'(decision.bypasses ? ray_row_i : row_q[9+Extra]);
+  assign row_free_o.valid  = decision.bypasses || ((step9.done || step9.continues) && !decision.keeps);
+  assign row_free_o.row    = RowLimit'(decision.bypasses ? ray_row_i : row_q[9+Extra]);
 
   // FaceNone selects the time of a new ray.
-  assign key_face = face_e'(exit_face9 | {2{decision.issues}});
-  assign keys     = '{exit_time9[0], exit_time9[1], exit_time9[2], ray_i.entry_time[KeyBits-1:0]};
+  assign key_face          = face_e'(exit_face9 | {2{decision.issues}});
+  assign keys              = '{exit_time9[0], exit_time9[1], exit_time9[2], ray_i.entry_time[KeyBits-1:0]};
 
   always_ff @(posedge clk_i) begin
     for (int unsigned s = 1; s < Slots; s++) begin

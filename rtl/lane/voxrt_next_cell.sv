@@ -65,8 +65,8 @@ module voxrt_next_cell
 
   always_comb begin
     for (int unsigned a = 0; a < 3; a++) begin
-      other[a]      = action_i == Leave ? time_i[(a+1)%3] : key_time_i;
-      first[a]      = action_i == Leave ? a != 2 : 2'(a) <= key_face_i;
+      other[a] = action_i == Leave ? time_i[(a+1)%3] : key_time_i;
+      first[a] = action_i == Leave ? a != 2 : 2'(a) <= key_face_i;
       if (Light && dead_i[a] && action_i != Leave) {other[a], first[a]} = '0;
       difference[a] = {time_i[a], 1'b0} - {other[a], first[a]};
       until_o[a]    = Light ? difference[a][KeyBits:1] : '0;

@@ -59,10 +59,10 @@ module voxrt_pixel_buffer #(
   assign write_index = clearing_q ? allocate_q[IndexBits-1:0] : tag_i[IndexBits-1:0];
 
   // Two entries may be on their way when the FIFO fills up.
-  assign fetches  = 3'(valid1_q) + 3'(valid2_q) + waiting_q < 3'(FifoDepth);
-  assign complete = valid2_q && phase2 == read_q[IndexBits];
-  assign early    = valid2_q && !complete;
-  assign pops     = valid_o && ready_i;
+  assign fetches     = 3'(valid1_q) + 3'(valid2_q) + waiting_q < 3'(FifoDepth);
+  assign complete    = valid2_q && phase2 == read_q[IndexBits];
+  assign early       = valid2_q && !complete;
+  assign pops        = valid_o && ready_i;
 
   always_ff @(posedge clk_i) begin
     ready_q <= free > TagBits'(1) && !clearing_q && rst_ni;

@@ -36,18 +36,18 @@ module voxrt_reflect
 
   always_ff @(posedge clk_i) begin
     if (material_write_i.valid) table_q[material_write_i.material] <= material_write_i.entry;
-    entry4_q          <= table_q[material_i];
-    entry5_q          <= entry4_q;
-    entry6_q          <= entry5_q;
-    entry7_q          <= entry6_q;
-    mirror8_q         <= entry7_q.mirror && bounces_i != '0;
-    mirrors8_q.count  <= mirrors7.count + 1'b1;
+    entry4_q            <= table_q[material_i];
+    entry5_q            <= entry4_q;
+    entry6_q            <= entry5_q;
+    entry7_q            <= entry6_q;
+    mirror8_q           <= entry7_q.mirror && bounces_i != '0;
+    mirrors8_q.count    <= mirrors7.count + 1'b1;
     mirrors8_q.total[0] <= mirrors7.total[0] + ColourSumBits'(entry7_q.colour.red);
     mirrors8_q.total[1] <= mirrors7.total[1] + ColourSumBits'(entry7_q.colour.green);
     mirrors8_q.total[2] <= mirrors7.total[2] + ColourSumBits'(entry7_q.colour.blue);
-    mirror9_q         <= mirror8_q;
-    last9_q           <= mirrors8_q.count[BounceBits-1:0] == bounces_i + 1'b1;
-    mirrors9_q        <= mirrors8_q;
+    mirror9_q           <= mirror8_q;
+    last9_q             <= mirrors8_q.count[BounceBits-1:0] == bounces_i + 1'b1;
+    mirrors9_q          <= mirrors8_q;
     if (issues_i || reflects_o) mirrors_q[slot9_i] <= issues_i ? '0 : mirrors9_q;
   end
 

@@ -77,26 +77,26 @@ module voxrt_slot_scheduler
   shade_e shade;
   mirrors_t mirrors;
 
-  assign face         = step_i.material == '0 ? FaceNone : step_i.key_face;
-  assign hits_face    = step_i.done && face != FaceNone && !shadow9;
+  assign face = step_i.material == '0 ? FaceNone : step_i.key_face;
+  assign hits_face = step_i.done && face != FaceNone && !shadow9;
   assign is_lightable = Light && hits_face && shading_i.light && !reflects && !escapes && !shows_mean;
-  assign asks         = is_lightable && !backface;
-  assign takes        = asks && holds_i && (hit_point_ready_i || (ray_valid_i && ray_i.shadow && !ray_i.resolved));
-  assign retires      = step_i.done && !reflects && !asks;
-  assign keeps        = (step_i.continues || (step_i.done && (reflects || asks))) && !takes;
+  assign asks = is_lightable && !backface;
+  assign takes = asks && holds_i && (hit_point_ready_i || (ray_valid_i && ray_i.shadow && !ray_i.resolved));
+  assign retires = step_i.done && !reflects && !asks;
+  assign keeps = (step_i.continues || (step_i.done && (reflects || asks))) && !takes;
 
   // A shadow ray has an entry in the reorder buffer already.
   assign allocatable = ray_i.shadow || allocate_ready_i;
-  assign issues      = ray_valid_i && !ray_i.resolved && allocatable && !keeps;
-  assign bypasses    = ray_valid_i && ray_i.resolved && allocatable && !step_i.done && !stores_point;
+  assign issues = ray_valid_i && !ray_i.resolved && allocatable && !keeps;
+  assign bypasses = ray_valid_i && ray_i.resolved && allocatable && !step_i.done && !stores_point;
   assign ray_ready_o = issues || bypasses;
-  assign allocate_o  = ray_ready_o && !ray_i.shadow;
+  assign allocate_o = ray_ready_o && !ray_i.shadow;
 
-  assign decision_o.issues   = issues;
+  assign decision_o.issues = issues;
   assign decision_o.bypasses = bypasses;
   assign decision_o.reflects = reflects;
-  assign decision_o.keeps    = keeps;
-  assign decision_o.set      = set;
+  assign decision_o.keeps = keeps;
+  assign decision_o.set = set;
 
   always_ff @(posedge clk_i) if (issues) tag_q[slot_i[9]] <= ray_i.shadow ? ray_i.tag : allocate_tag_i;
 
@@ -203,10 +203,10 @@ module voxrt_slot_scheduler
                               key_face8_i, side_i, slot_i[1], slot_i[2], slot_i[3], slot_i[4], slot_i[5], slot_i[6],
                               slot_i[7], slot_i[8]};
     assign {reflects, escapes, shows_mean} = '0;
-    assign decision_o.shift    = '0;
+    assign decision_o.shift = '0;
     assign decision_o.mirrored = step_i.mirrored;
     assign mirrors = '0;
-    assign set     = step_i.set;
+    assign set = step_i.set;
   end
 
   // Hit points, and the results of shadow rays.
@@ -257,8 +257,8 @@ module voxrt_slot_scheduler
                             light_planes_i, step_i.corner};
     assign {modes_o, shadow9, backface} = '0;
     assign result_o.lit = 1'b0;
-    assign takes_o      = 1'b0;
-    assign hit_o        = '0;
+    assign takes_o = 1'b0;
+    assign hit_o = '0;
   end
 
   `VOXRT_ASSERT(RayIsDoneOrContinues, !(step_i.done && step_i.continues))

@@ -50,28 +50,28 @@ module voxrt_axi_read_master
 
   assign request_ready_o = failed_q ? owed_q != CountBits'(UnderWay) :
       (!arvalid_q || axi_i.arready) && bursts_q != CountBits'(UnderWay) && owed_q != CountBits'(UnderWay);
-  assign accepts         = request_valid_i && request_ready_o;
-  assign sends           = accepts && !failed_q;
+  assign accepts = request_valid_i && request_ready_o;
+  assign sends = accepts && !failed_q;
 
   assign axi_o.arvalid = arvalid_q;
-  assign axi_o.araddr  = araddr_q;
-  assign axi_o.rready  = !line_valid_q || answer_ready_i;
+  assign axi_o.araddr = araddr_q;
+  assign axi_o.rready = !line_valid_q || answer_ready_i;
 
   assign receives = axi_i.rvalid && axi_o.rready && bursts_q != '0;
-  assign ends     = receives && beat_q == '1;
-  assign keeps    = receives && dropped_q == '0 && !failed_q;
+  assign ends = receives && beat_q == '1;
+  assign keeps = receives && dropped_q == '0 && !failed_q;
 
-  assign answer_valid_o  = failed_q ? owed_q != '0 : line_valid_q;
+  assign answer_valid_o = failed_q ? owed_q != '0 : line_valid_q;
   assign answer_failed_o = failed_q;
-  assign answer_line_o   = line_q;
-  assign answers         = answer_valid_o && answer_ready_i;
+  assign answer_line_o = line_q;
+  assign answers = answer_valid_o && answer_ready_i;
 
-  assign owed   = owed_q + CountBits'(accepts) - CountBits'(answers);
+  assign owed = owed_q + CountBits'(accepts) - CountBits'(answers);
   assign bursts = bursts_q + CountBits'(sends) - CountBits'(ends);
 
-  assign bus_error_o   = keeps && axi_i.rresp[1];
+  assign bus_error_o = keeps && axi_i.rresp[1];
   assign bus_timeout_o = !failed_q && waited_q == '1;
-  assign fails         = bus_error_o || bus_timeout_o || fail_i;
+  assign fails = bus_error_o || bus_timeout_o || fail_i;
 
   always_ff @(posedge clk_i) begin
     if (axi_i.arready) arvalid_q <= 1'b0;

@@ -155,10 +155,10 @@ module voxrt_l1_cache
   come_t come, come_q[TurnClocks], turn;
 
   assign come = '{
-      valid: answer_valid_i && answer_quarter_i == 2'd2,
-      set: answer_set_i,
-      asked: asked_set_q[answer_set_i]
-  };
+          valid: answer_valid_i && answer_quarter_i == 2'd2,
+          set: answer_set_i,
+          asked: asked_set_q[answer_set_i]
+      };
   assign turn = come_q[TurnClocks-1];
 
   always_ff @(posedge clk_i) begin
@@ -233,15 +233,15 @@ module voxrt_l1_cache
   assign word4 = pair[odd_q[1]];
 
   always_ff @(posedge clk_i) begin
-    read1_q    <= read_i;
-    line1_q    <= address_i[BlockBits+3:3];
-    octant1_q  <= address_i[2:0];
-    hit_q      <= {hit_q[3:2], hit};
-    way2_q     <= {set1, hit_way};
-    octant2_q  <= octant1_q;
-    odd_q      <= {odd_q[0], octant2_q[0]};
-    ack_q      <= hit_q[4];
-    word_q     <= word4;
+    read1_q   <= read_i;
+    line1_q   <= address_i[BlockBits+3:3];
+    octant1_q <= address_i[2:0];
+    hit_q     <= {hit_q[3:2], hit};
+    way2_q    <= {set1, hit_way};
+    octant2_q <= octant1_q;
+    odd_q     <= {odd_q[0], octant2_q[0]};
+    ack_q     <= hit_q[4];
+    word_q    <= word4;
     if (!rst_ni) begin
       read1_q <= 1'b0;
       hit_q   <= '0;

@@ -108,10 +108,10 @@ module voxrt_l2_cache
   logic [PipeLanes-1:0] hit_lanes[Pipes], fill_lanes[Pipes];
 
   always_ff @(posedge clk_i) begin
-    fill_q  <= {fill_q[4:1], fills};
+    fill_q <= {fill_q[4:1], fills};
     walk1_q <= {walk1_q[1], walks_q};
-    fill_line_q[1]  <= walks_q ? line_t'(walk_q) : fill_line;
-    fill_way_q[1]   <= fill_way;
+    fill_line_q[1] <= walks_q ? line_t'(walk_q) : fill_line;
+    fill_way_q[1] <= fill_way;
     fill_words_q[1] <= fill_words_i;
     for (int unsigned s = 2; s <= 5; s++) begin
       fill_line_q[s]  <= fill_line_q[s-1];
@@ -230,8 +230,8 @@ module voxrt_l2_cache
 
   always_ff @(posedge clk_i) begin
     second_first_q <= !second_first_q;
-    uses_q         <= counts_second ? hit[Pipes-1] || missed[Pipes-1] : hit[0] || missed[0];
-    used_set_q     <= line3[counts_second?Pipes-1 : 0][SetBits-1:0];
+    uses_q <= counts_second ? hit[Pipes-1] || missed[Pipes-1] : hit[0] || missed[0];
+    used_set_q <= line3[counts_second?Pipes-1 : 0][SetBits-1:0];
     used_way_q     <= counts_second ? (hit[Pipes-1] ? hit_way[Pipes-1] : new_way[Pipes-1]) :
         hit[0] ? hit_way[0] : new_way[0];
     if (uses_q) begin

@@ -57,9 +57,9 @@ module voxrt_octree_memory
   if (MemoryForm == CachedForm) begin : gen_cached
     logic unused_access;
 
-    assign unused_access  = &{access_address_i, access_word_i, access_write_i};
-    assign access_word_o  = '0;
-    assign first_word_o   = '0;
+    assign unused_access = &{access_address_i, access_word_i, access_write_i};
+    assign access_word_o = '0;
+    assign first_word_o  = '0;
     always_ff @(posedge clk_i) access_valid_o <= rst_ni && access_i && !access_write_i;
 
     voxrt_cached_memory #(

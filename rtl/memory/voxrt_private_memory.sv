@@ -61,8 +61,8 @@ module voxrt_private_memory #(
     logic accessed, odd_reads, swaps, swapped1_q, swapped2_q;
     logic [PayloadBits:0] a_word, b_word;
 
-    assign accessed  = access_i && (access_write_i || c == 0);
-    assign odd_reads = Paired && read_i[Odd];
+    assign accessed       = access_i && (access_write_i || c == 0);
+    assign odd_reads      = Paired && read_i[Odd];
 
     // Port B serves the even lane.
     assign swaps          = accessed && read_i[Even] && (prefers_even || !odd_reads);

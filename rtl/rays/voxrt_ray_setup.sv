@@ -130,8 +130,8 @@ module voxrt_ray_setup
 
   always_comb begin
     for (int unsigned a = 0; a < 3; a++) begin
-      negative[a]  = direction_i[a] < 0;
-      zero[a]      = direction_i[a] == 0;
+      negative[a] = direction_i[a] < 0;
+      zero[a] = direction_i[a] == 0;
       // Bits above the size's are the sign, or the component is too large; -2**DirectionBits alone shows in its magnitude.
       magnitude[a] = (direction_i[a][DirectionBits:0] ^ {(DirectionBits + 1){negative[a]}}) +
           (DirectionBits + 1)'(negative[a]);
@@ -241,9 +241,9 @@ module voxrt_ray_setup
     logic unused_light;
     assign unused_light = &{shadow_i, tag_i, point_i, side};
     assign {shadow2, shadow7, shadow11} = '0;
-    assign point2  = '{default: '0};
+    assign point2 = '{default: '0};
     assign point11 = '{default: '0};
-    assign tag11   = '0;
+    assign tag11 = '0;
   end
 
   // 2 to 5: the reach of voxrt_lod, its largest component times the scale, plus one; none where that is beyond all

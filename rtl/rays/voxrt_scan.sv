@@ -72,7 +72,7 @@ module voxrt_scan
       state_q       <= Right;
       half_width_q  <= half_width_i;
       half_height_q <= half_height_i;
-      bit_q       <= ($bits(bit_q))'(HalfBits - 1);
+      bit_q         <= ($bits(bit_q))'(HalfBits - 1);
     end
     if (!rst_ni) state_q <= Idle;
   end

@@ -78,7 +78,7 @@ module voxrt_brightness
 
   always_ff @(posedge clk_i) begin
     if (moves) begin
-      valid_q[1]         <= valid_i;
+      valid_q[1]        <= valid_i;
       info_q[1].pixel   <= pixel_i;
       info_q[1].shade   <= shade;
       info_q[1].lit     <= lit_i;
@@ -87,7 +87,7 @@ module voxrt_brightness
       if (Mirrors) info_q[1].mirrors <= mirrors_t'(detail_i[DetailBits-3:0]);
       for (int unsigned s = 2; s <= Stages; s++) begin
         valid_q[s] <= valid_q[s-1];
-        info_q[s] <= info_q[s-1];
+        info_q[s]  <= info_q[s-1];
       end
     end
     if (!rst_ni) valid_q <= '0;

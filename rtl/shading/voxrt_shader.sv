@@ -97,7 +97,7 @@ module voxrt_shader
     credits_q <= credits_q - CountBits'(enters) + CountBits'(leaves);
     // One clock late: a pixel may have entered since. With Ahead the FIFO of directions is empty only before the frame's
     // first direction and after its last one.
-    ready_q <= credits_q > CountBits'(1);
+    ready_q   <= credits_q > CountBits'(1);
     if (Ahead && !direction_valid) ready_q <= 1'b0;
     if (!rst_ni) begin
       credits_q <= CountBits'(FifoDepth);
