@@ -66,20 +66,20 @@ module board_memory_port
   end
 
   // A master lowers valid_i a clock after done_o.
-  assign asks = valid_i & mine & ~done_q;
-  assign access = asks[0] ? access_i[0] : access_i[1];
+  assign asks        = valid_i & mine & ~done_q;
+  assign access      = asks[0] ? access_i[0] : access_i[1];
 
-  assign place = 24'({page_q, access_q.address[22:2]}) + 24'd7;
-  assign beyond = place >= 24'(8 * Lines);
+  assign place       = 24'({page_q, access_q.address[22:2]}) + 24'd7;
+  assign beyond      = place >= 24'(8 * Lines);
 
-  assign valid_o = state_q == Request && !beyond;
-  assign write_o = access_q.write;
-  assign line_o = place[22:3];
-  assign mask_o = 16'd3 << {place[2:0], 1'b0};
+  assign valid_o     = state_q == Request && !beyond;
+  assign write_o     = access_q.write;
+  assign line_o      = place[22:3];
+  assign mask_o      = 16'd3 << {place[2:0], 1'b0};
 
   // Ports that do not write bring zeros.
   assign line_data_o = state_q == Request ? {8{access_q.data}} : '0;
-  assign written_o = valid_o && ready_i && write_o;
+  assign written_o   = valid_o && ready_i && write_o;
 
   always_ff @(posedge clk_i) begin
     done_q <= '0;

@@ -47,7 +47,7 @@ module voxrt_divide #(
       if (valid_i[s]) begin
         remainder_q <= sum;
         divisor_q   <= divisor[s];
-        bits_q    <= {bits[s][QuotientBits-2:0], !sum[DivisorBits]};
+        bits_q      <= {bits[s][QuotientBits-2:0], !sum[DivisorBits]};
       end
     end
 

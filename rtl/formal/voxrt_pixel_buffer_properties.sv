@@ -84,7 +84,7 @@ module voxrt_pixel_buffer_properties #(
     if (allocate_i && allocated_q == target) tag_q <= tag_o;
     if (completes_now) begin
       completed_q <= 1'b1;
-      lit_q    <= lit_i;
+      lit_q       <= lit_i;
     end
     if (store_i && is_target) begin
       stored_q <= 1'b1;
@@ -93,9 +93,9 @@ module voxrt_pixel_buffer_properties #(
     if (valid_o && ready_i) read_q <= read_q + 1'b1;
     if (!rst_ni) begin
       allocated_q <= '0;
-      read_q <= '0;
+      read_q      <= '0;
       completed_q <= 1'b0;
-      stored_q <= 1'b0;
+      stored_q    <= 1'b0;
     end
   end
 

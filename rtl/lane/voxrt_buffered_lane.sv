@@ -196,9 +196,9 @@ module voxrt_buffered_lane
     end else begin : gen_pixel
       logic unused_origin;
       assign unused_origin = ^arriving_origin;
-      assign extra_in = ray_i.pixel;
-      assign pixel    = extra;
-      assign origin   = '0;
+      assign extra_in      = ray_i.pixel;
+      assign pixel         = extra;
+      assign origin        = '0;
     end
     assign shadow = 1'b0;
     assign lit    = 1'b0;

@@ -132,7 +132,7 @@ module voxrt_next_cell
   face_e exit_face9_q, key_face9_q;
 
   assign {leaves_world, sum} = {1'b0, coordinate8_q} + (action8_q == Leave ? {1'b0, size8_q} : '0);
-  assign done = leaves_world || action8_q == Finish || (action8_q == Leave && dead8_q);
+  assign done                = leaves_world || action8_q == Finish || (action8_q == Leave && dead8_q);
 
   always_ff @(posedge clk_i) begin
     if (active_i[8]) begin

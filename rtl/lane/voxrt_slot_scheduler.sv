@@ -101,8 +101,8 @@ module voxrt_slot_scheduler
   always_ff @(posedge clk_i) if (issues) tag_q[slot_i[9]] <= ray_i.shadow ? ray_i.tag : allocate_tag_i;
 
   // A hit point waits for the port of the reorder buffer while rays retire.
-  assign point_ready_o = Light && !retires;
-  assign stores_point  = Light && point_valid_i && !retires;
+  assign point_ready_o     = Light && !retires;
+  assign stores_point      = Light && point_valid_i && !retires;
 
   // Pixels. That of a shadow ray is stored already.
   assign result_o.complete = retires || bypasses;

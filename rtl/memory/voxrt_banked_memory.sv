@@ -144,8 +144,8 @@ module voxrt_banked_memory
 
     always_ff @(posedge clk_i) begin
       accessed2_q <= accessed;
-      a_row2_q    <= accessed ? access_row_q[1] : row_q[1][number_of(first_q & in_bank_q[k])];
-      b_row2_q    <= row_q[1][number_of(last_q & in_bank_q[k])];
+      a_row2_q    <= accessed ? access_row_q[1] : row_q[1][number_of(first_q&in_bank_q[k])];
+      b_row2_q    <= row_q[1][number_of(last_q&in_bank_q[k])];
     end
 
     voxrt_block_ram #(

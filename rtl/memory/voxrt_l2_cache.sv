@@ -108,10 +108,10 @@ module voxrt_l2_cache
   logic [PipeLanes-1:0] hit_lanes[Pipes], fill_lanes[Pipes];
 
   always_ff @(posedge clk_i) begin
-    fill_q <= {fill_q[4:1], fills};
-    walk1_q <= {walk1_q[1], walks_q};
-    fill_line_q[1] <= walks_q ? line_t'(walk_q) : fill_line;
-    fill_way_q[1] <= fill_way;
+    fill_q          <= {fill_q[4:1], fills};
+    walk1_q         <= {walk1_q[1], walks_q};
+    fill_line_q[1]  <= walks_q ? line_t'(walk_q) : fill_line;
+    fill_way_q[1]   <= fill_way;
     fill_words_q[1] <= fill_words_i;
     for (int unsigned s = 2; s <= 5; s++) begin
       fill_line_q[s]  <= fill_line_q[s-1];

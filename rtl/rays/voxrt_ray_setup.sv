@@ -239,11 +239,11 @@ module voxrt_ray_setup
     assign tag11    = tag_q[11];
   end else begin : gen_no_light
     logic unused_light;
-    assign unused_light = &{shadow_i, tag_i, point_i, side};
+    assign unused_light                 = &{shadow_i, tag_i, point_i, side};
     assign {shadow2, shadow7, shadow11} = '0;
-    assign point2 = '{default: '0};
-    assign point11 = '{default: '0};
-    assign tag11 = '0;
+    assign point2                       = '{default: '0};
+    assign point11                      = '{default: '0};
+    assign tag11                        = '0;
   end
 
   // 2 to 5: the reach of voxrt_lod, its largest component times the scale, plus one; none where that is beyond all
@@ -285,7 +285,7 @@ module voxrt_ray_setup
     logic unused_product;
     assign unused_product = ^product4[DirectionBits-1:0];
 
-    assign reach11 = ReachLimit'(reach_q[11]);
+    assign reach11        = ReachLimit'(reach_q[11]);
   end else begin : gen_no_lod
     logic unused_scale;
     assign unused_scale = ^lod_scale_i;

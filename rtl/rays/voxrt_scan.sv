@@ -39,10 +39,10 @@ module voxrt_scan
   logic signed [CameraBits:0] term_q[3];
 
   always_ff @(posedge clk_i) begin
-    add_q    <= state_q != Idle && state_q != Corner && !start_i && rst_ni;
-    double_q <= state_q == Right;
-    subtract_q   <= state_q == Right || state_q == Line;
-    corner_q  <= state_q == Corner && !start_i && rst_ni;
+    add_q      <= state_q != Idle && state_q != Corner && !start_i && rst_ni;
+    double_q   <= state_q == Right;
+    subtract_q <= state_q == Right || state_q == Line;
+    corner_q   <= state_q == Corner && !start_i && rst_ni;
     for (int unsigned a = 0; a < 3; a++) begin
       unique case (state_q)
         Right:   term_q[a] <= half_width_q[HalfBits-1] ? (CameraBits + 1)'($signed(right_i[a])) : '0;

@@ -41,14 +41,14 @@ module sdram_bench
   logic [255:0] request_data;
   logic [1:0][255:0] answers;
 
-  assign accepted_o = ready & valid;
+  assign accepted_o      = ready & valid;
   assign accepted_line_o = lines;
-  assign done_o    = done[1:0];
-  assign answer0_o = answers[0];
-  assign answer1_o = answers[1];
-  assign valid[1:0] = valid_i;
-  assign lines[0]  = line_i[0][19:0];
-  assign lines[1]  = line_i[1][19:0];
+  assign done_o          = done[1:0];
+  assign answer0_o       = answers[0];
+  assign answer1_o       = answers[1];
+  assign valid[1:0]      = valid_i;
+  assign lines[0]        = line_i[0][19:0];
+  assign lines[1]        = line_i[1][19:0];
 
   for (genvar i = 0; i < 2; i++) begin : gen_axi
     axi_read_request_t request;

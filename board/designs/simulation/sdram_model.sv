@@ -130,10 +130,10 @@ module sdram_model #(
           rule(open[ba_i] && !closing[ba_i], "a burst in a closed bank");
           rule(now >= activated[ba_i] + 64'(TrcdPs), "tRCD");
           rule(beats == 0, "a burst in a burst");
-          beats = 8;
-          writes = !we_ni;
-          bank = ba_i;
-          column = a_i[8:0];
+          beats               = 8;
+          writes              = !we_ni;
+          bank                = ba_i;
+          column              = a_i[8:0];
           automatic_precharge = a_i[10];
           if (a_i[10]) begin
             closing[ba_i] = 1'b1;
