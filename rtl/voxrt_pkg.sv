@@ -102,7 +102,7 @@ package voxrt_pkg;
     return lod_words ? {block, mean} : {5'd0, block, 3'd1};
   endfunction
 
-  // What a pointer reads as that was refused.
+  // A pointer that was refused reads as this word.
   localparam logic [31:0] RefusedWord = 32'h7FFF_FFFF;
 
   // Words as the lanes read them have a bit more than payload_bits. The highest bit tells a leaf, whose low bits are a
@@ -123,12 +123,12 @@ package voxrt_pkg;
   localparam int unsigned BankedForm = 1;  // One memory in banks.
   localparam int unsigned CachedForm = 2;  // An external memory behind caches.
 
-  // From an address of the octree memory to its word.
+  // Clocks from an address of the octree memory to its word.
   function automatic int memory_clocks(int form);
     return form == int'(PrivateForm) ? 2 : 5;
   endfunction
 
-  // From an address of the memory port to its word: a register more, so that the port may be far away.
+  // Clocks from an address of the memory port to its word: one more, for a register, so that the port may be far away.
   function automatic int access_clocks(int form);
     return 1 + memory_clocks(form);
   endfunction
@@ -205,7 +205,7 @@ package voxrt_pkg;
 
   // A frame, as the registers describe it. Camera and light: grid frame, signed, 1/16 voxel; look, right, up: signed.
   typedef struct packed {
-    logic [31:0]                memory_base;  // Of the external memory; voxrt_line_reader.
+    logic [31:0]                memory_base;  // Byte address in the external memory: voxrt_line_reader.
     logic [2:0][31:0]           position;
     logic [2:0][CameraBits-1:0] look;
     logic [2:0][CameraBits-1:0] right;
@@ -222,7 +222,7 @@ package voxrt_pkg;
 
   // The world of a frame; held during it.
   typedef struct packed {
-    logic [2:0][DistanceLimit-1:0] origin;           // Of the camera's rays, signed.
+    logic [2:0][DistanceLimit-1:0] origin;           // Origin of the camera's rays, signed.
     logic [2:0][DistanceLimit-1:0] mirrored_origin;  // 16 * side - origin, signed.
     logic [4:0]                    depth;
     logic [DepthLimit:0]           side;             // Voxels, one-hot.
@@ -239,7 +239,7 @@ package voxrt_pkg;
     logic [SizeBits-1:0]        height;
   } raster_t;
 
-  // Where the light is among the planes of each axis, in the grid's frame ([0]) and mirrored ([1]).
+  // The place of the light among the planes of each axis, in the grid's frame ([0]) and mirrored ([1]).
   typedef struct packed {
     logic [1:0][2:0][DepthLimit:0] occluder;  // A plane of lower number is between a point and the light.
     logic [1:0][2:0][DepthLimit:0] backface;  // A face in a plane of lower number is turned away from the light.
@@ -250,17 +250,17 @@ package voxrt_pkg;
   // A ray that has entered the world, in the mirrored frame. Its weights travel apart.
   typedef struct packed {
     logic                          resolved;    // The result is known: nothing to trace.
-    pixel_t                        pixel;       // The result of a camera ray that is resolved ...
-    logic                          lit;         // ... and of a shadow ray.
+    pixel_t                        pixel;       // What a resolved ray of the camera shows.
+    logic                          lit;         // Whether a resolved shadow ray reaches the light.
     logic                          shadow;
-    logic [TagBits-1:0]            tag;         // Of a shadow ray: the entry of its pixel.
+    logic [TagBits-1:0]            tag;         // The entry of a shadow ray's pixel.
     logic [2:0]                    mirrored;    // Axes.
     logic [2:0]                    dead;        // Axes on which the ray does not move.
-    logic [2:0]                    octant;      // Of the root: the first one.
+    logic [2:0]                    octant;      // The first octant of the root.
     logic [KeyLimit-1:0]           entry_time;
     face_e                         entry_face;
     logic [2:0][DistanceLimit-1:0] origin;      // Signed; 1/32 voxel for shadow rays.
-    logic [ReachLimit-1:0]         reach;       // As voxrt_lod has it.
+    logic [ReachLimit-1:0]         reach;       // See voxrt_lod.
   } ray_t;
 
   // The weights of a ray go to its lane before it does, into a row that is free.
@@ -301,12 +301,12 @@ package voxrt_pkg;
 
   // A ray at stage 9 of a lane.
   typedef struct packed {
-    logic                       done;       // It has hit, left the world, or met an error ...
-    logic                       continues;  // ... or not. Both are low where no ray is.
-    material_t                  material;   // Of the word read; 0 without a hit.
-    face_e                      key_face;   // Of the plane crossed last.
+    logic                       done;       // It has hit, left the world, or met an error.
+    logic                       continues;  // It goes on. Neither is high where no ray is.
+    material_t                  material;   // The material of the word read; 0 without a hit.
+    face_e                      key_face;   // The face of the plane crossed last.
     logic [2:0]                 mirrored;
-    logic [2:0][DepthLimit-1:0] corner;     // Of the cell read.
+    logic [2:0][DepthLimit-1:0] corner;     // The corner of the cell read.
     logic [2:0]                 set;        // Axes on which the next corner has the bit of the next size.
   } step_t;
 
@@ -316,16 +316,16 @@ package voxrt_pkg;
     logic                         bypasses;  // The ray that waits is resolved: it needs no slot.
     logic                         reflects;  // The ray of the slot starts again at the root.
     logic                         keeps;     // The slot keeps its ray.
-    logic signed [DepthLimit+1:0] shift;     // Of a reflected ray's origin: side - 2 * plane, voxels.
-    logic [2:0]                   mirrored;  // Of the slot's ray from now on.
-    logic [2:0]                   set;       // As in step_t, from now on.
+    logic signed [DepthLimit+1:0] shift;     // How far a reflected ray's origin moves: side - 2 * plane, voxels.
+    logic [2:0]                   mirrored;  // The axes of the slot's ray from now on.
+    logic [2:0]                   set;       // See step_t; from now on.
   } decision_t;
 
   // What rays are, in the stages of a lane that ask.
   typedef struct packed {
     logic      waits0;     // It has hit, and waits for voxrt_hit_point.
     logic      waits2;
-    material_t material2;  // That it has hit.
+    material_t material2;  // What it has hit.
     logic      shadow1;
     logic      shadow2;
     logic      shadow3;
@@ -336,7 +336,7 @@ package voxrt_pkg;
     logic               complete;  // Nothing more comes; the pixel is stored now or was before.
     logic               store;
     logic [TagBits-1:0] tag;
-    logic               lit;       // With complete.
+    logic               lit;       // Valid with complete.
   } result_t;
 
   // What a pixel's colour is made of. In the reorder buffer, a payload is below it.
@@ -379,9 +379,9 @@ package voxrt_pkg;
   typedef struct packed {
     colour_t colour;
     pixel_t  pixel;
-    logic    first;     // Of the frame.
+    logic    first;     // The first pixel of the frame.
     logic    line_end;
-    logic    last;      // Of the frame.
+    logic    last;      // The last pixel of the frame.
   } shaded_pixel_t;
 
   // Why a pixel may be wrong.
@@ -403,7 +403,7 @@ package voxrt_pkg;
     logic [31:0] word_requests;  // Lanes have asked for a word, which they did not always get.
     logic [31:0] line_requests;  // Caches of lanes have asked for a line.
     logic [31:0] lines_read;     // Lines of 32 bytes, from the external memory.
-    logic [31:0] cycles;         // From the start to the last pixel accepted.
+    logic [31:0] cycles;         // Clocks from the start to the last pixel accepted.
     logic [31:0] rays;           // Pixels accepted.
     logic [31:0] words_read;
     logic [31:0] hits;           // Pixels accepted that show a material.
@@ -459,10 +459,10 @@ package voxrt_pkg;
 
   // A pixel's place in a strip, in the order of voxrt_strip_place.
   typedef struct packed {
-    logic                  last_line;     // Of the strip.
+    logic                  last_line;     // The last line of the strip.
     logic                  last_of_half;  // The last column of its half of the picture.
     logic                  last_column;   // The last one of the strip, or of the line.
-    logic                  last_strip;    // Of the frame.
+    logic                  last_strip;    // The last strip of the frame.
     logic                  leftwards;     // The next column of the half is the one to the left.
     logic [StripLimit-1:0] address;
   } strip_place_t;

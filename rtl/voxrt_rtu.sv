@@ -52,7 +52,7 @@ module voxrt_rtu
   output logic                      pixel_valid_o,
   input  logic                      pixel_ready_i,
   output shaded_pixel_t             pixel_o,
-  // Of this frame, or of the last one when busy_o is low. Errors stick until the next frame.
+  // Counts and errors of this frame, or of the last one when busy_o is low. Errors stick until the next frame.
   output error_t                    error_o,
   output counters_t                 counters_o
 );

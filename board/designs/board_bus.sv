@@ -5,7 +5,7 @@
 module board_bus
   import board_pkg::*;
 #(
-  parameter int unsigned MemoryClocks = 3  // From an address of the octree memory to its word: 2 or more.
+  parameter int unsigned MemoryClocks = 3  // Clocks from an address of the octree memory to its word: 2 or more.
 ) (
   input  logic                    clk_i,
   input  logic                    rst_ni,

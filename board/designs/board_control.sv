@@ -38,7 +38,7 @@ module board_control
   input  row_event_t                       row_i,
   output logic                             drain_o,
   output logic                             new_frame_o,       // A frame starts; for one clock.
-  output logic       [          1:0]       scale_o            // Of it.
+  output logic       [          1:0]       scale_o            // The scale of the new frame.
 );
   // Bit flush of the core's register control, which board_frames writes to start a frame.
   localparam int unsigned FlushBit = 4;

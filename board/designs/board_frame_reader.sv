@@ -11,7 +11,7 @@ module board_frame_reader
   input  logic               frame_i,
   input  logic       [  1:0] scale_i,
   output logic               reading_o,
-  output logic               row_event_o,   // As board_line_buffer has them.
+  output logic               row_event_o,   // See board_line_buffer.
   output row_event_t         row_o,
   // A port of the SDRAM's arbiter.
   output logic               valid_o,
@@ -24,7 +24,7 @@ module board_frame_reader
   input  logic               pixel_clk_i,
   input  logic               pixel_rst_ni,
   input  logic               row_begin_i,   // A row begins in a few clocks; for one clock.
-  input  logic       [  9:0] row_i,         // Which one.
+  input  logic       [  9:0] row_i,         // The number of that row.
   input  logic       [  9:0] column_i,
   output logic       [ 23:0] pixel_o        // Three clocks after column_i.
 );

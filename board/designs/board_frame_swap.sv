@@ -6,7 +6,7 @@ module board_frame_swap (
   input  logic       clk_i,
   input  logic       rst_ni,
   input  logic       new_frame_i,    // The core starts a frame; for one clock.
-  input  logic [1:0] scale_i,        // Of that frame.
+  input  logic [1:0] scale_i,        // The scale of that frame.
   input  logic       reading_i,      // The screen reads a frame.
   output logic       hold_o,         // The new frame waits.
   output logic       drawn_o,        // The frame that the core draws.

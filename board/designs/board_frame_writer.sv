@@ -5,7 +5,7 @@ module board_frame_writer
 (
   input  logic         clk_i,
   input  logic         rst_ni,
-  input  logic         frame_i,        // Which one, at the frame's first word.
+  input  logic         frame_i,        // The number of the frame, at its first word.
   input  logic         hold_i,         // No frame begins.
   input  logic         s_axis_tvalid,
   output logic         s_axis_tready,
@@ -20,7 +20,7 @@ module board_frame_writer
   output logic [255:0] data_o
 );
   logic full_q, last_q, frame_q, beyond, accepts;
-  logic [6:0] line_q;  // Of the row; 64 and more are beyond.
+  logic [6:0] line_q;  // The line of the row; from 64 on it is beyond.
   logic [8:0] row_q;
   logic [2:0] word_q, word;
   logic [15:0] mask_q;

@@ -52,7 +52,7 @@ module board_frames
   localparam logic [23:0] CoreStatus = 24'h000010;
   localparam logic [TableBits-1:0] Cameras = 12'h800;
 
-  // So many rows before the first visible one a late frame is given up: lists are short against one row.
+  // A late frame is given up so many rows before the first visible one. Lists are short against one row.
   localparam int unsigned LastStartRow = RowsTotal - 8;
 
   typedef enum logic [2:0] {
@@ -79,7 +79,7 @@ module board_frames
 
   control_t control_q;
   logic [6:0] camera_q;
-  logic [7:0] shown_q;  // Frames of the camera.
+  logic [7:0] shown_q;  // How many frames show the camera.
   logic pending_q;
   logic [TableBits-1:0] list_q;
   logic [31:0] frames_q, underruns_q, late_q, requests_q, bad_requests_q, refused_q;
@@ -130,7 +130,7 @@ module board_frames
           late_q     <= late_q + 1'b1;
           late_led_q <= 1'b1;
         end
-        // Only when no access is under way.
+        // A frame starts only when no access is under way.
         if (late_led_q && done_i) state_q <= Wait;
       end
       List: begin

@@ -24,7 +24,7 @@ module board_line_buffer
   input  logic              pixel_rst_ni,
   input  logic       [ 1:0] scale_i,
   input  logic              row_begin_i,   // A row begins in a few clocks; for one clock.
-  input  logic       [ 9:0] row_i,         // Which one.
+  input  logic       [ 9:0] row_i,         // The number of that row.
   input  logic       [ 9:0] column_i,
   output logic       [23:0] pixel_o        // Three clocks after column_i.
 );
@@ -36,7 +36,7 @@ module board_line_buffer
   localparam int unsigned Lines = 2 ** LineBits;
 
   // Where the core writes.
-  logic [8:0] line_q;  // Of the frame: complete lines.
+  logic [8:0] line_q;  // How many lines of the frame are complete.
   logic [8:0] keep_q;  // The line that the beam shows.
   logic [ColumnBits-1:0] column_q;
   logic ready_q, parity_q, ended_q, restarted_q, accepted;
@@ -48,7 +48,7 @@ module board_line_buffer
   assign accepted = valid_i && ready_o;
 
   always_ff @(posedge clk_i) begin
-    // Decided anew after each line; a frame has no more lines than the screen has rows.
+    // This is decided anew after each line. A frame has no more lines than the screen has rows.
     ready_q <= line_q - keep_q < 9'(Lines) && line_q < 9'(Rows) && !(accepted && line_end_i) && !ended_q;
     ended_q <= accepted && line_end_i && !drain_i;
     if (row_event) keep_q <= row.line;

@@ -6,12 +6,12 @@
 module board_memory_port
   import board_pkg::*;
 #(
-  // Of the octree memory: word 0 is the last of line 0, a block has a line. 2 .. 2**20.
+  // Lines of the octree memory: word 0 is the last of line 0, and a block has a line. 2 .. 2**20.
   parameter int unsigned Lines = 983_040
 ) (
   input  logic                  clk_i,
   input  logic                  rst_ni,
-  // Masters, as board_bus has them.
+  // Masters; see board_bus.
   input  logic    [  1:0]       valid_i,
   input  access_t [  1:0]       access_i,
   output logic    [  1:0]       done_o,
@@ -53,7 +53,7 @@ module board_memory_port
   logic [1:0] mine, asks, done_q;
   access_t access, access_q;
   logic [PageBits-1:0] page_q;
-  logic [23:0] place;  // Of the word, from the beginning of the SDRAM.
+  logic [23:0] place;  // The place of the word, from the beginning of the SDRAM.
   logic beyond;
   logic [31:0] data_q;
 

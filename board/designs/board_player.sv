@@ -4,8 +4,8 @@ module board_player
 (
   input  logic                    clk_i,
   input  logic                    rst_ni,
-  input  logic                    start_i,    // While busy_o is low.
-  input  logic    [TableBits-1:0] word_i,     // Where the list begins.
+  input  logic                    start_i,    // Only while busy_o is low.
+  input  logic    [TableBits-1:0] word_i,     // The word at which the list begins.
   input  logic                    camera_i,   // The list has 16 words at most.
   output logic                    busy_o,
   output logic                    refused_o,  // A write was refused; for one clock.
@@ -25,7 +25,7 @@ module board_player
 
   state_e state_q;
   logic [TableBits:0] word_q;  // One beyond the table ends the list.
-  logic [4:0] left_q;  // Words of a camera.
+  logic [4:0] left_q;  // Words of a camera that are left.
   logic camera_q, ends;
   logic [7:0] count_q;
   logic [23:0] address_q;

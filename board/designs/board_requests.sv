@@ -58,7 +58,7 @@ module board_requests
   status_e status_q;
   logic [7:0] operation_q, sequence_q, count_q, word_q;
   logic [23:0] address_q;
-  logic [2:0] place_q;  // Of a byte in the header, a word, the CRC.
+  logic [2:0] place_q;  // The place of a byte in the header, a word or the CRC.
   logic broken_q, malformed, last_word, answers_words, receives;
   logic [GapBits-1:0] gap_q;
 

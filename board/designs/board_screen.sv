@@ -12,7 +12,7 @@ module board_screen
   // Blue, green, red.
   output logic [ 2:0][9:0] words_o
 );
-  localparam int unsigned Clocks = 3;  // From a column to its pixel.
+  localparam int unsigned Clocks = 3;  // Clocks from a column to its pixel.
 
   logic [9:0] column_q, row_q;
   logic last_column;

@@ -20,7 +20,7 @@ module board_sdram #(
   input  logic [ 15:0] request_mask_i,   // Which half words are written.
   input  logic [255:0] request_data_i,
   output logic         done_o,           // For one clock, once per request.
-  output logic [255:0] line_o,           // With done_o of a read.
+  output logic [255:0] line_o,           // What was read, with done_o.
   // To the pins.
   output logic         sdram_cke_o,
   output logic         sdram_cs_no,
@@ -48,11 +48,11 @@ module board_sdram #(
   localparam int unsigned RefreshBits = $clog2(RefreshClocks + 1);
   localparam logic [12:0] Mode = 13'h033;  // Bursts of 8, sequential, CAS latency 3.
   localparam logic [2:0] RefreshWait = 3'd6;  // tRFC.
-  localparam logic [1:0] RowWait = 2'd1;  // tRCD, less the clock that sees it.
-  localparam logic [3:0] CloseAfterRead = 4'd10;  // From the last burst's command: the burst, tRP.
+  localparam logic [1:0] RowWait = 2'd1;  // tRCD, less the clock that sees the row open.
+  localparam logic [3:0] CloseAfterRead = 4'd10;  // Clocks from the last burst's command: the burst, tRP.
   localparam logic [3:0] CloseAfterWrite = 4'd11;  // The burst, tWR, tRP.
   localparam logic [4:0] ReadToWrite = 5'd20;  // The chip has let go of the data.
-  localparam int unsigned DoneClocks = 21;  // From a line's first command to its last half word.
+  localparam int unsigned DoneClocks = 21;  // Clocks from a line's first command to its last half word.
 
   // {RAS, CAS, WE}, low.
   typedef enum logic [2:0] {
@@ -91,11 +91,11 @@ module board_sdram #(
   logic [6:0] place_q;  // {column / 16, bank}.
   logic [15:0] mask_q, dq_q;
   logic [255:0] data_q;
-  logic [4:0] turn_q;  // Until a write may start.
+  logic [4:0] turn_q;  // Clocks until a write may start.
 
   // Banks.
   logic [3:0] open_q;
-  logic [3:0][3:0] closes_q;  // Until they may be opened.
+  logic [3:0][3:0] closes_q;  // Clocks until the banks may be opened.
 
   logic [DoneClocks-1:0] under_way_q;
   logic [255:0] line_q;

@@ -46,7 +46,7 @@ module board_tmds (
   end
 
   // 3: no mean: invert where that brings the sum of ones less zeros towards 0.
-  logic signed [4:0] balance_q, balance, difference;  // Half of ones less zeros.
+  logic signed [4:0] balance_q, balance, difference;  // Half the number of ones less that of zeros.
   logic flips;
 
   assign difference = $signed({1'b0, chain_ones_q}) - 5'sd4;

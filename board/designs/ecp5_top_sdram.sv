@@ -85,7 +85,7 @@ module ecp5_top_sdram #(
   logic [2:0][9:0] words;
   logic [7:0] all_leds;
 
-  // As board_sdram_pins has them.
+  // See board_sdram_pins.
   logic cke, cs_n, ras_n, cas_n, we_n, dq_oe;
   logic [1:0] ba, dqm;
   logic [12:0] a;

@@ -5,8 +5,8 @@
 // beats after the values, during the whole beat.
 module voxrt_collect #(
   parameter int unsigned Width  = 8,  // Bits: 1 or more.
-  parameter int unsigned Clocks = 2,  // Of the unit, from its values to their result: 2 or 3.
-  parameter int unsigned Beats  = 2   // From values to results_o: 2 or more.
+  parameter int unsigned Clocks = 2,  // Clocks of the unit from its values to their result: 2 or 3.
+  parameter int unsigned Beats  = 2   // Beats from values to results_o: 2 or more.
 ) (
   input  logic             clk_i,
   input  logic [      1:0] turn_i,

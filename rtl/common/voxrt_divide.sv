@@ -10,11 +10,11 @@ module voxrt_divide #(
   parameter int unsigned DivisorBits  = 8,  // 1 or more.
   parameter int unsigned QuotientBits = 8   // 2 or more.
 ) (
-  input  logic                                clk_i,
-  input  logic [            QuotientBits-1:0] valid_i,     // Of each stage: registers hold where it is low.
-  input  logic [DivisorBits+QuotientBits-1:0] dividend_i,
-  input  logic [             DivisorBits-1:0] divisor_i,
-  output logic [            QuotientBits-1:0] quotient_o   // QuotientBits clocks later.
+  input logic clk_i,
+  input logic [QuotientBits-1:0] valid_i,  // Whether each stage has a value: its registers hold where it has none.
+  input logic [DivisorBits+QuotientBits-1:0] dividend_i,
+  input logic [DivisorBits-1:0] divisor_i,
+  output logic [QuotientBits-1:0] quotient_o  // QuotientBits clocks later.
 );
   if (DivisorBits < 1) begin : gen_bad_divisor_bits
     $error("voxrt_divide: DivisorBits must be 1 bit or more");

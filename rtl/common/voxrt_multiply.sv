@@ -11,7 +11,7 @@ module voxrt_multiply
 #(
   parameter int unsigned ABits     = 20,  // 1 or more.
   parameter int unsigned BBits     = 20,  // 1 or more.
-  parameter int unsigned LogicBits = 0    // Of a, multiplied in logic: fewer than ABits.
+  parameter int unsigned LogicBits = 0    // Bits of a that are multiplied in logic: fewer than ABits.
 ) (
   input  logic                   clk_i,
   input  logic [      ABits-1:0] a_i,

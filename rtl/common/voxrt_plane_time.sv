@@ -48,7 +48,7 @@ module voxrt_plane_time
   end else begin : gen_narrow
     localparam int unsigned PartBits = 14;
     localparam int unsigned Parts = 3;
-    localparam int unsigned LowBits = MultiplierSide;  // Of the distance.
+    localparam int unsigned LowBits = MultiplierSide;  // The lower part of the distance.
     localparam int unsigned ProductBits = MultiplierBits + PartBits;
 
     logic [Parts*PartBits-1:0] weight;

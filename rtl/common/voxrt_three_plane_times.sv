@@ -5,7 +5,7 @@ module voxrt_three_plane_times
   import voxrt_pkg::*;
 #(
   parameter int unsigned RayClocks    = 1,
-  parameter int unsigned DistanceBits = 18,                        // As voxrt_plane_time has them.
+  parameter int unsigned DistanceBits = 18,                        // See voxrt_plane_time.
   parameter int unsigned TimeBits     = DistanceBits + WeightBits
 ) (
   input  logic                           clk_i,

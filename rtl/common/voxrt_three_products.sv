@@ -2,10 +2,10 @@
 // With RayClocks = 4 one multiplier makes all, for parts with few of them, and they come two beats later. Values stay
 // for a beat (voxrt_turns).
 module voxrt_three_products #(
-  parameter int unsigned RayClocks = 1,
-  parameter int unsigned ABits = 20,  // As voxrt_multiply has them.
-  parameter int unsigned BBits = 20,
-  parameter bit [2:0][7:0] LogicBits = '0  // As voxrt_multiply has it, of each product; of a shared one, none.
+  parameter int unsigned            RayClocks = 1,
+  parameter int unsigned            ABits     = 20,  // See voxrt_multiply.
+  parameter int unsigned            BBits     = 20,
+  parameter bit          [2:0][7:0] LogicBits = '0   // The LogicBits of each multiplier; a shared one has none.
 ) (
   input  logic                   clk_i,
   input  logic [            1:0] turn_i,

@@ -16,16 +16,16 @@ module voxrt_lane_coverage
   input logic                     descend_i,         // Into a pointer's block.
   input logic                     leave_i,           // An empty leaf.
   input logic                     finish_i,          // Material, or an error.
-  input logic      [MaxDepth-1:0] size_i,            // Of the cell, one-hot.
-  input logic      [MaxDepth-1:0] coordinate_i,      // Of its corner, on the axis of the exit.
+  input logic      [MaxDepth-1:0] size_i,            // Size of the cell, one-hot.
+  input logic      [MaxDepth-1:0] coordinate_i,      // Coordinate of its corner on the axis of the exit.
   input face_e                    exit_i,
   input face_e                    key_face_i,        // The plane that the ray crossed last.
   input material_t                material_i,
   input logic      [         2:0] mirrored_i,
   input logic      [         2:0] dead_i,
-  input logic      [         2:0] child_i,           // Of a pointer, in the mirrored frame.
+  input logic      [         2:0] child_i,           // A pointer's child, in the mirrored frame.
   input logic      [ KeyBits-1:0] time_i       [3],
-  input logic      [  MaxDepth:0] side_i,            // Of the world, one-hot.
+  input logic      [  MaxDepth:0] side_i,            // Side of the world, one-hot.
   input logic                     bad_pointer_i,
   input logic                     step_limit_i
 );

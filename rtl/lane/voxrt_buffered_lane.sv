@@ -11,7 +11,7 @@ module voxrt_buffered_lane
   parameter int unsigned MaxDepth     = 10,
   parameter int unsigned PositionBits = 17,
   parameter int unsigned BlockBits    = 12,
-  parameter int unsigned MemoryClocks = 2,     // From an address to its word, as memory_clocks has it: 2 .. 5.
+  parameter int unsigned MemoryClocks = 2,     // Clocks from an address to its word (memory_clocks): 2 .. 5.
   parameter int unsigned RowBits      = 5,     // 2**RowBits rays, in slots and waiting: 5, or, as with Light, 6.
   parameter int unsigned RayDepth     = 16,    // Waiting rays, of each kind: a power of two, 2 .. 2**RowBits.
   parameter int unsigned CreditClocks = 1,     // credit_o does not count what was issued so many clocks before: 1 .. 3.
@@ -133,7 +133,7 @@ module voxrt_buffered_lane
   always_ff @(posedge clk_i) begin
     returned_q <= rst_ni && ray_valid && ray_ready && !shadow;
     credits_q  <= credits_q - CountBits'(issue_i) + CountBits'(returned_q);
-    // Late: credits may have been taken since.
+    // Credits may have been taken since credits_q was compared, so some are kept back.
     credit_q   <= credits_q > CountBits'(CreditClocks) && rst_ni;
     if (!rst_ni) credits_q <= CountBits'(Credits);
   end
@@ -216,7 +216,7 @@ module voxrt_buffered_lane
     ray.octant     = queued.octant;
     ray.entry_time = KeyLimit'(queued.entry_time);
     ray.entry_face = queued.entry_face;
-    ray.reach      = '0;  // With the weights.
+    ray.reach      = '0;  // The reach goes with the weights.
     for (int unsigned a = 0; a < 3; a++) ray.origin[a] = DistanceLimit'($signed(origin[a]));
   end
 

@@ -47,7 +47,7 @@ module voxrt_hit_point
   localparam int unsigned CountBits = $clog2(Bits + 1);
   localparam int unsigned Skip = (MaxDepth + 2) / 3;
 
-  // How a ray comes to the second place, or not: with how many bits left out.
+  // Whether a ray comes to the second place, and how many bits are left out.
   typedef enum logic [1:0] {
     Stay,
     MoveAll,

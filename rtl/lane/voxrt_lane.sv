@@ -35,7 +35,7 @@ module voxrt_lane
   parameter int unsigned MaxDepth     = 10,
   parameter int unsigned PositionBits = 17,
   parameter int unsigned BlockBits    = 12,
-  parameter int unsigned MemoryClocks = 2,     // From an address to its word, as memory_clocks has it: 2 .. 5.
+  parameter int unsigned MemoryClocks = 2,     // Clocks from an address to its word (memory_clocks): 2 .. 5.
   parameter int unsigned RowBits      = 5,     // 2**RowBits rays, in slots and waiting: 5, or, as with Light, 6.
   parameter bit          Light        = 1'b0,
   parameter bit          Mirrors      = 1'b0,
@@ -45,7 +45,7 @@ module voxrt_lane
   input logic rst_ni,
   // Held during a frame.
   input world_t world_i,
-  input logic [payload_bits(BlockBits, Lod):0] root_i,  // A leaf only with Light or Mirrors.
+  input logic [payload_bits(BlockBits, Lod):0] root_i,  // A leaf with Light or Mirrors alone.
   input shading_t shading_i,
   input light_planes_t light_planes_i,
   // Material table, for mirrors.
@@ -53,7 +53,7 @@ module voxrt_lane
   // The weights of a ray that comes later, into a free row; a row that is free again.
   input weights_write_t weights_write_i,
   output row_free_t row_free_o,
-  // Rays, as voxrt_ray_setup makes them, with their rows; taken in order. Weights are not used.
+  // Rays of voxrt_ray_setup with their rows, taken in order. Their weights are not used.
   input logic ray_valid_i,
   output logic ray_ready_o,
   input ray_t ray_i,
@@ -69,7 +69,7 @@ module voxrt_lane
   input logic [TagBits-1:0] allocate_tag_i,
   output result_t result_o,
   output logic [pixel_bits(MaxDepth, Light, Mirrors)-1:0] result_pixel_o,
-  // For voxrt_light: a hit point will come, only with hit_point_ready_i or when a shadow ray is issued; it comes.
+  // For voxrt_light: the claim says that a hit point will come. It needs hit_point_ready_i, or that a shadow ray is issued.
   output logic hit_point_claim_o,
   input logic hit_point_ready_i,
   output logic hit_point_valid_o,
@@ -134,7 +134,7 @@ module voxrt_lane
   logic root_is_leaf;
   ray_modes_t modes;
 
-  // Then it is read as if it were eight.
+  // A root that is a leaf is read as if it were a block of eight such leaves.
   assign root_is_leaf  = (Light || Mirrors) && root_i[PayloadBits];
   assign mem_read_o    = active_q[0] && !modes.waits0 && !root_is_leaf;
   assign mem_address_o = {block0_q, octant0_q};
@@ -142,7 +142,7 @@ module voxrt_lane
   // 2 decode.
   logic leaf, bad_pointer, step_limit, arrived;
   logic [PayloadBits:0] word;
-  leaf_t content;  // Of a leaf.
+  leaf_t content;  // What a leaf holds.
   action_e action;
   logic [MaxDepth-1:0] size2;
 

@@ -7,7 +7,7 @@ module voxrt_lod
   import voxrt_pkg::*;
 #(
   parameter int unsigned LevelBits = 4,  // 1 or more.
-  parameter int unsigned WholeBits = 14  // Of a distance, voxels, signed: 2 .. ReachLimit.
+  parameter int unsigned WholeBits = 14  // Bits of a distance in voxels, signed: 2 .. ReachLimit.
 ) (
   input  logic                        clk_i,
   // Stage 2: a ray reads a pointer with that mean material; 0: the cell is not to be stopped at.

@@ -14,40 +14,40 @@ module voxrt_next_cell
   parameter int unsigned MaxDepth = 10,
   parameter bit          Light    = 1'b0
 ) (
-  input logic clk_i,
-  input logic rst_ni,
+  input  logic                                    clk_i,
+  input  logic                                    rst_ni,
   // Held during a frame.
-  input logic [MaxDepth-1:0] outside_mask_i,  // Bits that are 0 in the world.
-  input logic [MaxDepth-1:0] top_size_i,  // Half of the world.
+  input  logic    [                 MaxDepth-1:0] outside_mask_i,     // Bits that are 0 in the world.
+  input  logic    [                 MaxDepth-1:0] top_size_i,         // Half of the world.
   // Which of stages 6, 7, 8 have a ray.
-  input logic [8:6] active_i,
+  input  logic    [                          8:6] active_i,
   // Stage 6.
-  input action_e action_i,
-  input logic [key_bits(MaxDepth, Light)-1:0] time_i[3],  // Of far planes, to leave by; else middle or near.
-  input logic [key_bits(MaxDepth, Light)-1:0] key_time_i,
-  input face_e key_face_i,
-  input logic [2:0] dead_i,
-  input logic [MaxDepth-1:0] corner_i[3],
-  input logic [MaxDepth-1:0] size_i,
+  input  action_e                                 action_i,
+  input  logic    [key_bits(MaxDepth, Light)-1:0] time_i        [3],  // Far planes, to leave by; else middle or near.
+  input  logic    [key_bits(MaxDepth, Light)-1:0] key_time_i,
+  input  face_e                                   key_face_i,
+  input  logic    [                          2:0] dead_i,
+  input  logic    [                 MaxDepth-1:0] corner_i      [3],
+  input  logic    [                 MaxDepth-1:0] size_i,
   // For voxrt_hit_point, where near planes are given.
-  output logic [key_bits(MaxDepth, Light)-1:0] until_o[3],
+  output logic    [key_bits(MaxDepth, Light)-1:0] until_o       [3],
   // Stage 8.
-  output logic [MaxDepth-1:0] corner8_o[3],
-  output face_e key_face8_o,
+  output logic    [                 MaxDepth-1:0] corner8_o     [3],
+  output face_e                                   key_face8_o,
   // Stage 9: what the ray has done, and its next key, where it leaves its cell. Material and mirrored are the lane's.
-  output step_t step_o,
-  output logic leaves_cell_o,
-  output logic [key_bits(MaxDepth, Light)-1:0] exit_time_o[3],
-  output face_e exit_face_o,
+  output step_t                                   step_o,
+  output logic                                    leaves_cell_o,
+  output logic    [key_bits(MaxDepth, Light)-1:0] exit_time_o   [3],
+  output face_e                                   exit_face_o,
   // Stage 9: whether the slot's ray starts at the root; the axes on which the corner gets the next size.
-  input logic restarts_i,
-  input logic [2:0] set_i,
+  input  logic                                    restarts_i,
+  input  logic    [                          2:0] set_i,
   // Stage 10.
-  output logic [MaxDepth-1:0] size10_o,
+  output logic    [                 MaxDepth-1:0] size10_o,
   // Stage 11; octant in the mirrored frame.
-  output logic [MaxDepth-1:0] corner11_o[3],
-  output logic [MaxDepth-1:0] size11_o,
-  output logic [2:0] octant11_o
+  output logic    [                 MaxDepth-1:0] corner11_o    [3],
+  output logic    [                 MaxDepth-1:0] size11_o,
+  output logic    [                          2:0] octant11_o
 );
   localparam int unsigned KeyBits = key_bits(MaxDepth, Light);
 
@@ -55,7 +55,7 @@ module voxrt_next_cell
   // axis before the start. Equal times go by axis: x is before y, y before z, and x before z.
   logic [KeyBits-1:0] other[3];
   logic [KeyBits:0] difference[3];
-  logic [2:0] first;  // Of equals.
+  logic [2:0] first;  // Which of two equal times comes first.
   logic [2:0] before7_q;
   logic [KeyBits-1:0] time7_q[3];
   face_e key_face7_q;

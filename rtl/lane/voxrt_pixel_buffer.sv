@@ -49,10 +49,10 @@ module voxrt_pixel_buffer #(
 
   logic [TagBits-1:0] allocate_q, fetch_q, read_q, free;
   logic ready_q, clearing_q, fetches, valid1_q, valid2_q, phase2, complete, early, pops, fifo_ready;
-  logic [2:0] waiting_q;  // In the FIFO.
+  logic [2:0] waiting_q;  // Pixels in the FIFO.
   logic [IndexBits-1:0] write_index;
 
-  // One clock late: an entry may have been allocated since, so the last free one is not given away.
+  // ready_o is a clock late, and an entry may have been allocated since: so the last free one is not given away.
   assign free        = (read_q ^ First) - allocate_q;
   assign ready_o     = ready_q;
   assign tag_o       = allocate_q;

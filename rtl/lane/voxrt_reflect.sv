@@ -6,7 +6,7 @@
 module voxrt_reflect
   import voxrt_pkg::*;
 #(
-  parameter int unsigned Slots = 12  // Rays in the ring of the lane, as lane_slots has it: 12 .. 15.
+  parameter int unsigned Slots = 12  // Rays in the ring of the lane (lane_slots): 12 .. 15.
 ) (
   input  logic                                clk_i,
   // Held during a frame; 0: no material is a mirror.

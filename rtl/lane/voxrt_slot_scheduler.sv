@@ -19,13 +19,13 @@ module voxrt_slot_scheduler
   import voxrt_pkg::*;
 #(
   parameter int unsigned MaxDepth = 10,
-  parameter int unsigned Slots    = 12,    // Rays in the ring of the lane, as lane_slots has it: 12 .. 15.
+  parameter int unsigned Slots    = 12,    // Rays in the ring of the lane (lane_slots): 12 .. 15.
   parameter bit          Light    = 1'b0,
   parameter bit          Mirrors  = 1'b0
 ) (
   input  logic                                                       clk_i,
   input  logic                                                       rst_ni,
-  // As voxrt_lane has them.
+  // See voxrt_lane.
   input  logic            [                              MaxDepth:0] side_i,
   input  shading_t                                                   shading_i,
   input  light_planes_t                                              light_planes_i,
@@ -213,7 +213,7 @@ module voxrt_slot_scheduler
   if (Light) begin : gen_light
     logic waits_q[Slots];
     logic shadow_q[Slots];
-    material_t material_q[Slots];  // That a ray has hit that waits.
+    material_t material_q[Slots];  // What a ray that waits has hit.
     logic shadow3_q, occluded;
 
     assign modes_o.waits0    = waits_q[slot0_i];
@@ -231,7 +231,7 @@ module voxrt_slot_scheduler
       shadow3_q <= modes_o.shadow2;
     end
 
-    // Of a shadow ray: what it hits is before the light. Of another: the light is not in front of the face.
+    // The compare says of a shadow ray that its hit is before the light, and of another ray that it hit a back face.
     always_comb begin
       occluded = face == FaceNone;
       backface = 1'b0;

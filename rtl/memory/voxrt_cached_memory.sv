@@ -25,7 +25,7 @@ module voxrt_cached_memory
   input logic start_i,
   output logic ready_o,
   input logic flush_i,
-  input logic [31:0] base_i,  // As voxrt_line_reader has them.
+  input logic [31:0] base_i,  // See voxrt_line_reader.
   input logic lod_words_i,
   // Lanes.
   input logic [Lanes-1:0] read_i,

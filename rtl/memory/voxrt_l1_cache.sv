@@ -22,7 +22,7 @@ module voxrt_l1_cache
   parameter int unsigned BlockBits = 12,
   parameter int unsigned SetBits = 5,  // 2**SetBits sets: 1 or more, less than BlockBits.
   parameter int unsigned Ways = 4,  // Lines of a set: 1, 2 or 4.
-  // Until a ray comes round: 2 clocks or more.
+  // Clocks until a ray comes round: 2 or more.
   parameter int unsigned TurnClocks = lane_slots(memory_clocks(int'(CachedForm))),
   parameter bit Lod = 1'b0
 ) (
@@ -66,7 +66,7 @@ module voxrt_l1_cache
 
   // States of the sets: see above.
   logic asked_set_q[Sets], come_set_q[Sets], free_set_q[Sets];
-  logic [WayBits-1:0] new_way_q[Sets];  // Where the line goes that the set has asked for last.
+  logic [WayBits-1:0] new_way_q[Sets];  // The way for the line that the set has asked for last.
 
   // Which ways were used last, by set: bit b (b - 1) / 2 + a says that a was used after b, for ways a < b.
   localparam int unsigned OrderBits = Ways > 1 ? Ways * (Ways - 1) / 2 : 1;
@@ -100,7 +100,7 @@ module voxrt_l1_cache
 
   // What becomes of the tags.
   logic allocates;
-  logic [SetBits-1:0] new_row;  // That is written.
+  logic [SetBits-1:0] new_row;  // The row that is written.
   logic [TagBits1:0] new_tag;  // A bit that says that the way is not empty, and the line's upper bits.
   logic [WayBits-1:0] victim;
 
@@ -210,7 +210,7 @@ module voxrt_l1_cache
   logic [4:2] hit_q;
   logic [SetBits+WayBits-1:0] way2_q;
   logic [2:0] octant2_q;
-  logic [1:0] odd_q;  // In stages 4 and 3.
+  logic [1:0] odd_q;  // Whether the word is odd, in stages 4 and 3.
   logic [1:0][WordBits-1:0] pair, unused_pair;
   logic [WordBits-1:0] word4, word_q;
   logic ack_q;

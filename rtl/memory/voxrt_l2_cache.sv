@@ -52,7 +52,7 @@ module voxrt_l2_cache
   localparam int unsigned Pipes = Lanes > 1 ? 2 : 1;
   localparam int unsigned PipeLanes = (Lanes + 1) / 2;
   localparam int unsigned LineBits = BlockBits + 1;
-  localparam int unsigned StoredBits = LineBits - SetBits;  // Of a line's number, in the tags.
+  localparam int unsigned StoredBits = LineBits - SetBits;  // Bits of a line's number that the tags hold.
   localparam int unsigned LineWidth = 8 * (payload_bits(BlockBits, Lod) + 1);
   typedef logic [LineBits-1:0] line_t;
 

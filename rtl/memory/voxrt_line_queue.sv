@@ -4,9 +4,9 @@
 `include "voxrt_assert.svh"
 
 module voxrt_line_queue #(
-  parameter int unsigned Lanes    = 2,   // That share the queue: 1 or more.
-  parameter int unsigned SetBits  = 5,   // Of their caches: 1 or more.
-  parameter int unsigned WordBits = 14,  // Of a word, as lanes read it: 1 or more.
+  parameter int unsigned Lanes    = 2,   // Lanes that share the queue: 1 or more.
+  parameter int unsigned SetBits  = 5,   // Their caches have 2**SetBits sets: 1 or more.
+  parameter int unsigned WordBits = 14,  // Bits of a word as lanes read it: 1 or more.
   parameter int unsigned Depth    = 16   // Lines that the lanes ask for at a time, together: a power of two, 2 or more.
 ) (
   input  logic                             clk_i,

@@ -13,10 +13,10 @@ module voxrt_line_reader
 ) (
   input logic clk_i,
   input logic rst_ni,  // The bus's reset.
-  input logic clear_i,  // As voxrt_axi_read_master has them.
+  input logic clear_i,  // See voxrt_axi_read_master.
   input logic recover_i,
   input logic [31:0] base_i,  // A multiple of 32, held during a frame.
-  input logic lod_words_i,  // Held too; see voxrt_word_encoder.
+  input logic lod_words_i,  // See voxrt_word_encoder; held during a frame.
   input logic request_valid_i,
   output logic request_ready_o,
   input logic [BlockBits:0] request_line_i,  // Signed.

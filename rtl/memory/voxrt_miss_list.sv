@@ -13,7 +13,7 @@
 module voxrt_miss_list #(
   parameter int unsigned Pipes     = 2,   // 1 or 2.
   parameter int unsigned PipeLanes = 8,   // Lanes per pipe: 1 or more.
-  parameter int unsigned LineBits  = 13,  // Of a line's number: 1 or more.
+  parameter int unsigned LineBits  = 13,  // Bits of a line's number: 1 or more.
   parameter int unsigned Entries   = 16   // Lines: a power of two, 2 or more.
 ) (
   input  logic                 clk_i,
@@ -24,8 +24,8 @@ module voxrt_miss_list #(
   input  logic [ LineBits-1:0] next_line_i  [Pipes],  // line_i of the next clock.
   input  logic [ LineBits-1:0] line_i       [Pipes],
   input  logic [PipeLanes-1:0] lanes_i      [Pipes],  // One-hot.
-  input  logic [          1:0] way_i        [Pipes],  // Where its line will go.
-  output logic [    Pipes-1:0] accepted_o,            // Joined or entered.
+  input  logic [          1:0] way_i        [Pipes],  // The way for its line.
+  output logic [    Pipes-1:0] accepted_o,            // The entry that is joined or entered.
   // Lines to fetch.
   output logic                 fetch_valid_o,
   input  logic                 fetch_ready_i,
@@ -55,14 +55,14 @@ module voxrt_miss_list #(
   typedef logic [IndexBits-1:0] index_t;
 
   logic [Entries-1:0] valid_q;
-  logic [LineBits-1:0] line_q[Entries];  // Compared with all.
+  logic [LineBits-1:0] line_q[Entries];  // These are compared with all lookups.
   logic [LineBits-1:0] fetched_q[Entries];  // The same, for what reads one entry.
-  logic [LineBits+1:0] coming_q[Entries];  // And with the way.
+  logic [LineBits+1:0] coming_q[Entries];  // The same with the way.
   index_t tail_q, fetch_q, come_q, free_q, walk_q;
   logic walks_q;
 
   logic [Entries-1:0] same_q[Pipes];
-  index_t entry[Pipes];  // Joined or entered.
+  index_t entry[Pipes];  // The entry that is joined or entered.
   logic [Pipes-1:0] joins, enters;
   logic full, second_first_q, enters_second, both_same_q;
 
@@ -78,7 +78,7 @@ module voxrt_miss_list #(
       joins[p]  = miss_i[p] && same_q[p] != '0;
       enters[p] = miss_i[p] && same_q[p] == '0 && !full;
     end
-    // Of two, one enters; the other joins it if it wants the same line.
+    // If both pipes miss, one enters, and the other joins it if it wants the same line.
     enters_second = Pipes == 2 && enters[Pipes-1] && (second_first_q || !enters[0]);
     accepted_o    = joins | enters;
     if (enters == '1 && Pipes == 2 && !both_same_q) begin

@@ -22,7 +22,8 @@ module voxrt_octree_memory
 ) (
   input logic clk_i,
   input logic rst_ni,
-  // Report dialect or, with lod_words_i, dialect lod; word addresses, any order, one access per clock; what is written beyond the memory is dropped.
+  // Words are of the report dialect or, with lod_words_i, of the dialect lod. Addresses are of words, in any order, one
+  // per clock. What is written beyond the memory is dropped.
   input logic access_i,
   input logic access_write_i,
   input logic [31:0] access_address_i,

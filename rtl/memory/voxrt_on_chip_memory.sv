@@ -14,7 +14,7 @@ module voxrt_on_chip_memory
   parameter int unsigned BlockBits = 12,
   parameter bit          Banked    = 1'b0,  // BankedForm, not PrivateForm.
   parameter bit          Lod       = 1'b0,
-  parameter string       File      = ""     // As voxrt_octree_memory has it.
+  parameter string       File      = ""     // See voxrt_octree_memory.
 ) (
   input logic clk_i,
   input logic rst_ni,
@@ -27,7 +27,8 @@ module voxrt_on_chip_memory
   output logic access_valid_o,  // access_word_o is what was read.
   output logic [31:0] access_word_o,
   output logic [payload_bits(BlockBits, Lod):0] first_word_o,  // Word 0.
-  // Lanes: a word comes memory_clocks(Banked ? BankedForm : PrivateForm) clocks after its address, {block, octant}, with ack_o or not.
+  // Lanes: a word comes memory_clocks(Banked ? BankedForm : PrivateForm) clocks after its address, {block,
+  // octant}, with ack_o or not.
   input logic [Lanes-1:0] read_i,
   input logic [BlockBits+2:0] address_i[Lanes],
   output logic [Lanes-1:0] ack_o,

@@ -10,7 +10,7 @@
 module voxrt_private_memory #(
   parameter int unsigned Lanes       = 1,
   parameter int unsigned AddressBits = 15,  // 2**AddressBits words: 1 or more.
-  parameter int unsigned PayloadBits = 12,  // Of a word, besides the highest: 9 or more.
+  parameter int unsigned PayloadBits = 12,  // Bits of a word besides the highest: 9 or more.
   parameter string       File        = ""   // For $readmemh: a row per line, encoded.
 ) (
   input  logic                   clk_i,

@@ -8,14 +8,14 @@ module voxrt_root
   import voxrt_pkg::*;
 #(
   parameter int unsigned BlockBits    = 12,
-  parameter int unsigned MemoryClocks = 2,     // From an address to its word, as memory_clocks has it: 2 .. 5.
+  parameter int unsigned MemoryClocks = 2,     // Clocks from an address to its word (memory_clocks): 2 .. 5.
   parameter bit          Lod          = 1'b0,
   parameter bit          ReadsFirst   = 1'b0   // Word 0 is read like all others, from block -1.
 ) (
   input  logic                                  clk_i,
   input  logic                                  rst_ni,
   input  logic                                  start_i,
-  input  logic [                          31:0] address_i,       // Of a word.
+  input  logic [                          31:0] address_i,       // Address of a word.
   input  logic [payload_bits(BlockBits, Lod):0] first_word_i,    // Word 0.
   output logic                                  valid_o,
   output logic [payload_bits(BlockBits, Lod):0] root_o,
@@ -39,7 +39,7 @@ module voxrt_root
   logic [PayloadBits:0] root_q;
 
   assign offset = address_i - 32'd1;
-  // True of word 0 too, if it is not read.
+  // Word 0 counts as beyond too, if it is not read.
   assign beyond = offset[31:AddressBits] != '0 && !(ReadsFirst && address_i == '0);
 
   always_ff @(posedge clk_i) begin

@@ -6,7 +6,7 @@ module voxrt_word_decoder
   parameter int unsigned BlockBits = 12,
   parameter bit          Lod       = 1'b0
 ) (
-  input  logic                                  lod_words_i,  // As voxrt_word_encoder has it.
+  input  logic                                  lod_words_i,  // See voxrt_word_encoder.
   input  logic [payload_bits(BlockBits, Lod):0] word_i,
   output logic [                          31:0] word_o
 );

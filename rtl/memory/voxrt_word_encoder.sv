@@ -23,7 +23,7 @@ module voxrt_word_encoder
     if (is_leaf(word_i, lod_words)) begin
       word_o = {1'b1, PayloadBits'(material_of(word_i))};
     end else if (pointer[2:0] != 3'd1 || pointer[30:BlockBits+3] != '0) begin
-      // Into the middle of a block, or out of the memory.
+      // The pointer leads into the middle of a block, or out of the memory.
       word_o = {1'b1, PayloadBits'(ErrorLeaf)};
     end else begin
       word_o[BlockBits-1:0] = pointer[BlockBits+2:3];

@@ -5,7 +5,7 @@ module voxrt_counters
   parameter int unsigned Lanes = 1
 ) (
   input  logic                       clk_i,
-  input  logic                       start_i,               // Of a frame.
+  input  logic                       start_i,               // A frame starts.
   input  logic                       rays_start_i,          // The root has been read, which does not count.
   input  logic                       busy_i,
   // A pixel is offered, and accepted; it shows a material.

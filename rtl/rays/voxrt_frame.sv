@@ -15,7 +15,7 @@ module voxrt_frame
   input  logic   clk_i,
   input  logic   start_i,
   input  frame_t frame_i,
-  // From the clock after start_i on.
+  // Valid from the clock after start_i on.
   output frame_t frame_o,
   output world_t world_o
 );

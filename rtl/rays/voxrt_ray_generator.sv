@@ -21,7 +21,7 @@ module voxrt_ray_generator
   output logic                       last_o           // Last pixel of the frame.
 );
   logic corner_q, valid_q, first_q, line_end_q, last_line_q;
-  logic [SizeBits-1:0] column_q, row_q;  // From 1 on.
+  logic [SizeBits-1:0] column_q, row_q;  // Counted from 1.
   logic signed [ScanBits-1:0] direction_q[3], line_q[3], next[3];
   logic advances, new_line, last;
 

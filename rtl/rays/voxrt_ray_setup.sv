@@ -28,16 +28,16 @@ module voxrt_ray_setup
   input logic rst_ni,
   // Held during a frame.
   input world_t world_i,
-  input logic root_leaf_i,  // The whole world is one leaf ...
-  input material_t root_material_i,  // ... of this material.
+  input logic root_leaf_i,  // The whole world is one leaf.
+  input material_t root_material_i,  // The material of that leaf.
   input logic [LodScaleBits-1:0] lod_scale_i,  // 0: off.
   // Directions.
   input logic valid_i,
   output logic ready_o,
   input logic [Lanes-1:0] lane_i,  // One-hot: which lane the ray is for.
   input logic signed [ScanBits-1:0] direction_i[3],
-  input logic shadow_i,  // A shadow ray, from ...
-  input logic [2:0][ShadowPointLimit-1:0] point_i,  // ... this point, 1/32 voxel, grid frame, signed.
+  input logic shadow_i,  // The ray is a shadow ray.
+  input logic [2:0][ShadowPointLimit-1:0] point_i,  // Where a shadow ray starts, 1/32 voxel, grid frame, signed.
   input logic [TagBits-1:0] tag_i,
   // Rays, in the same order.
   output logic valid_o,
@@ -54,7 +54,7 @@ module voxrt_ray_setup
   localparam int unsigned Stages = 11;
   // The world's side, in time.
   localparam int unsigned SpanBits = WeightBits + (Light ? ShadowFractionBits : FractionBits) + MaxDepth;
-  // Between any two of the times compared.
+  // Bits of the difference of two times that are compared.
   localparam int unsigned GapBits = TimeBits + 1;
 
   // Frame.
@@ -71,7 +71,7 @@ module voxrt_ray_setup
     side  = world_i.side[MaxDepth:0];
   end
 
-  // The pipeline moves when `advance` is high; `moves`: a stage that holds a ray does.
+  // The pipeline moves when `advance` is high; `moves` says it of the stages that hold a ray.
   logic advance, takes;
   logic [1:0] turn;
 
@@ -86,7 +86,8 @@ module voxrt_ray_setup
 
   assign ready_o = advance;
 
-  // With many lanes valid_i is a long path, so it does not enable the multipliers. They may read a direction without a ray.
+  // With many lanes valid_i is a long path, so it does not enable the multipliers. They may read a direction without a
+  // ray.
   if (many_lanes(Lanes)) begin : gen_takes_all
     assign takes = advance;
   end else begin : gen_takes
@@ -132,7 +133,7 @@ module voxrt_ray_setup
     for (int unsigned a = 0; a < 3; a++) begin
       negative[a] = direction_i[a] < 0;
       zero[a] = direction_i[a] == 0;
-      // Bits above the size's are the sign, or the component is too large; -2**DirectionBits alone shows in its magnitude.
+      // A component is too large if a bit above its size differs from the sign; of -2**DirectionBits the size shows it.
       magnitude[a] = (direction_i[a][DirectionBits:0] ^ {(DirectionBits + 1){negative[a]}}) +
           (DirectionBits + 1)'(negative[a]);
       too_large[a] = magnitude[a][DirectionBits] ||
@@ -374,7 +375,7 @@ module voxrt_ray_setup
 
   // 10: which middle and far planes come before the entry: their T less the key is below 0, or is 0 and the axis comes
   // first. In whole numbers, less one: below 0.
-  logic [2:0] last;  // Of equals.
+  logic [2:0] last;  // Which of two equal times comes last.
   logic [GapBits:0] middle[3], far[3];
   logic [2:0] past_middle_q[10:11], past_far_q;
 

@@ -28,7 +28,7 @@ module voxrt_rays
   input  logic                           shadow_valid_i,
   input  logic        [       Lanes-1:0] shadow_lane_i,    // One-hot.
   input  shadow_ray_t                    shadow_ray_i,
-  // Rays, as voxrt_ray_setup makes them.
+  // Rays of voxrt_ray_setup.
   output logic                           valid_o,
   output logic        [       Lanes-1:0] lane_o,
   output logic                           overflow_o,
@@ -126,7 +126,7 @@ module voxrt_rays
 `ifndef SYNTHESIS
   logic [Lanes-1:0] credit_q, credit;
 
-  assign credit = many_lanes(Lanes) ? credit_q : credit_i;  // As a ray's issue sees it.
+  assign credit = many_lanes(Lanes) ? credit_q : credit_i;  // What the issue of a ray sees.
 
   always_ff @(posedge clk_i) credit_q <= rst_ni ? credit_i : '0;
 `endif

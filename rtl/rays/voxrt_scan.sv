@@ -21,8 +21,8 @@ module voxrt_scan
 );
   typedef enum logic [2:0] {
     Idle,    // line_step_o is the step.
-    Right,   // Twice the sum, minus right where the bit of width/2 is set ...
-    Up,      // ... plus up where that of height/2 is.
+    Right,   // Twice the sum, minus right where the bit of width/2 is set.
+    Up,      // Plus up where the bit of height/2 is set.
     Look,    // Plus look.
     Corner,  // The sum is the first direction.
     Line     // 0 - up.

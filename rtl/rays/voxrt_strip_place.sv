@@ -23,9 +23,9 @@ module voxrt_strip_place
   input  logic                        advances_i,
   output strip_place_t                place_o
 );
-  logic [StripLineLimit-1:0] line_q, strip_end;  // In the strip.
-  logic [SizeBits-1:0] first_line_q, lines_left;  // Of the strip, in the frame; from there on.
-  logic [SizeBits-2:0] column_q;  // In its half.
+  logic [StripLineLimit-1:0] line_q, strip_end;  // Counted in the strip.
+  logic [SizeBits-1:0] first_line_q, lines_left;  // The strip's first line in the frame, and the lines from there on.
+  logic [SizeBits-2:0] column_q;  // Counted in its half.
   logic right_half_q, leftwards_q;
   logic last_line, last_of_half, last_column, last_strip;
   logic [2:0] line_bits;

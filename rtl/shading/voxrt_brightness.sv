@@ -19,22 +19,22 @@ module voxrt_brightness
   parameter bit          Light    = 1'b1,
   parameter bit          Mirrors  = 1'b1
 ) (
-  input  logic                                                          clk_i,
-  input  logic                                                          rst_ni,
+  input logic clk_i,
+  input logic rst_ni,
   // Held during a frame.
-  input  logic        [                               MaxDepth:0]       side_i,       // Of the world, voxels, one-hot.
-  input  logic        [                                      2:0][31:0] light_i,      // 1/16 voxel, signed.
-  input  shading_t                                                      shading_i,
+  input logic [MaxDepth:0] side_i,  // Side of the world in voxels, one-hot.
+  input logic [2:0][31:0] light_i,  // 1/16 voxel, signed.
+  input shading_t shading_i,
   // Pixels, their details as the reorder buffer has them.
-  input  logic                                                          valid_i,
-  output logic                                                          ready_o,
-  input  pixel_t                                                        pixel_i,
-  input  logic                                                          lit_i,
-  input  logic        [detail_bits(MaxDepth, Light, Mirrors)-1:0]       detail_i,
-  output logic                                                          valid_o,
-  input  logic                                                          ready_i,
-  output pixel_t                                                        pixel_o,
-  output brightness_t                                                   brightness_o
+  input logic valid_i,
+  output logic ready_o,
+  input pixel_t pixel_i,
+  input logic lit_i,
+  input logic [detail_bits(MaxDepth, Light, Mirrors)-1:0] detail_i,
+  output logic valid_o,
+  input logic ready_i,
+  output pixel_t pixel_o,
+  output brightness_t brightness_o
 );
   localparam int unsigned HitBits = MaxDepth + FractionBits;
   localparam int unsigned DetailBits = detail_bits(MaxDepth, Light, Mirrors);

@@ -17,9 +17,9 @@ module voxrt_light
   input  logic                             clk_i,
   input  logic                             rst_ni,
   // Held during a frame.
-  input  logic          [MaxDepth:0]       side_i,                    // Of the world, voxels, one-hot.
+  input  logic          [MaxDepth:0]       side_i,                    // Side of the world in voxels, one-hot.
   input  logic          [       2:0][31:0] light_i,                   // 1/16 voxel, signed.
-  // Hit points, as voxrt_lane gives them.
+  // Hit points of voxrt_lane.
   input  logic          [ Lanes-1:0]       hit_point_claim_i,
   output logic          [ Lanes-1:0]       hit_point_ready_o,
   input  logic          [ Lanes-1:0]       hit_point_valid_i,

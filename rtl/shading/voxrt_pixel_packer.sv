@@ -19,7 +19,7 @@ module voxrt_pixel_packer
   input  logic           valid_i,
   output logic           ready_o,
   input  colour_t        colour_i,
-  input  logic           first_i,        // Of the frame.
+  input  logic           first_i,        // First pixel of the frame.
   input  logic           line_end_i,
   output logic           m_axis_tvalid,
   input  logic           m_axis_tready,

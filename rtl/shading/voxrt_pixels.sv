@@ -7,7 +7,7 @@ module voxrt_pixels
   parameter int unsigned MaxDepth  = 10,
   parameter bit          Light     = 1'b0,
   parameter bit          Mirrors   = 1'b0,
-  parameter bit          Strips    = 1'b0,  // As voxrt_rays has it.
+  parameter bit          Strips    = 1'b0,  // See voxrt_rays.
   parameter int unsigned RayClocks = 1
 ) (
   input  logic                                                             clk_i,

@@ -16,7 +16,7 @@
 module voxrt_shader
   import voxrt_pkg::*;
 #(
-  parameter int unsigned Lanes     = 1,     // That the pixels come from.
+  parameter int unsigned Lanes     = 1,     // Lanes that the pixels come from.
   parameter bit          Given     = 1'b0,  // voxrt_brightness is there.
   parameter int unsigned RayClocks = 1      // 1, or 4: one multiplier for three axes or channels.
 ) (
@@ -53,8 +53,8 @@ module voxrt_shader
   logic direction_valid, enters, first, line_end, last;
   logic signed [ScanBits-1:0] direction[3];
 
-  // With many lanes, directions are made ahead: a pixel that enters moves a pointer, not the generator, which is far away.
-  // Only where the pipeline moves at every clock.
+  // With many lanes, directions are made ahead. Then a pixel that enters moves a pointer, not the generator far away.
+  // This needs a pipeline that moves at every clock.
   localparam bit Ahead = many_lanes(Lanes) && RayClocks == 1;
 
   voxrt_ray_generator #(
@@ -95,7 +95,7 @@ module voxrt_shader
 
   always_ff @(posedge clk_i) begin
     credits_q <= credits_q - CountBits'(enters) + CountBits'(leaves);
-    // One clock late: a pixel may have entered since. With Ahead the FIFO of directions is empty only before the frame's
+    // This is a clock late: a pixel may have entered since. With Ahead the FIFO of directions is empty only before the frame's
     // first direction and after its last one.
     ready_q   <= credits_q > CountBits'(1);
     if (Ahead && !direction_valid) ready_q <= 1'b0;
@@ -105,7 +105,7 @@ module voxrt_shader
     end
   end
 
-  // The pipeline moves when `advance` is high; `moves`: a stage that holds a pixel does.
+  // The pipeline moves when `advance` is high; `moves` says it of the stages that hold a pixel.
   logic [Stages:1] valid_q, moves;
   info_t info_q[1:Stages];
 
@@ -120,10 +120,10 @@ module voxrt_shader
   end
 
   // 1 direction, material.
-  // Of a channel: a colour, or a sum of colours.
+  // A channel of a colour, or of a sum of colours.
   localparam int unsigned ChannelBits = Given ? ColourSumBits : 8;
 
-  // Not in block RAM, which the octree may fill up.
+  // The table is not in block RAM, which the octree may fill up.
   (* ram_style = "distributed" *)
   colour_t table_q[256];
   colour_t colour1_q;

@@ -8,7 +8,7 @@ module voxrt_strip_buffer
 ) (
   input  logic                clk_i,
   input  logic                rst_ni,
-  // Of the frame, for one clock before its pixels; then width and height are held.
+  // The frame starts, a clock before its pixels. Then width and height are held.
   input  logic                start_i,
   input  logic [SizeBits-1:0] width_i,
   input  logic [SizeBits-1:0] height_i,

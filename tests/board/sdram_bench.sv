@@ -16,9 +16,9 @@ module sdram_bench
   // Ports 0 and 1: lines. Port 0 is the screen's.
   input  logic               urgent_i,
   input  logic [  1:0]       valid_i,
-  output logic [  3:0]       accepted_o,            // Of all ports.
+  output logic [  3:0]       accepted_o,            // Requests accepted, by port.
   output logic [  3:0][19:0] accepted_line_o,
-  input  logic               write_i,               // Of port 1.
+  input  logic               write_i,               // Whether port 1 writes.
   input  logic [ 31:0]       line_i           [2],
   input  logic [ 15:0]       mask_i,
   input  logic [255:0]       data_i,

@@ -39,14 +39,14 @@ module sdram_model #(
   logic [15:0] memory[1<<24];
 
   longint unsigned now = 0;  // In picoseconds.
-  longint unsigned activated[4], closed[4];  // A bank closed by automatic precharge: when that begins.
+  longint unsigned activated[4], closed[4];  // Automatic precharge closes a bank at its beginning.
   longint unsigned refreshed = 0, mode_set = 0, written = 0;
   logic [12:0] row[4];
   logic [3:0] open = '0, closing = '0;
   logic has_mode = 1'b0, precharged = 1'b0;
   int unsigned refreshes = 0, latency = 0;
 
-  int unsigned beats = 0;  // That the burst still has.
+  int unsigned beats = 0;  // Beats that the burst still has.
   logic writes, automatic_precharge;
   logic [1:0] bank;
   logic [8:0] column;
