@@ -21,10 +21,12 @@ module voxrt_word_encoder
   always_comb begin
     word_o = '0;
     if (is_leaf(word_i, lod_words)) begin
-      word_o = {1'b1, PayloadBits'(material_of(word_i))};
+      word_o[PayloadBits]           = 1'b1;
+      word_o[$bits(material_t)-1:0] = material_of(word_i);
     end else if (pointer[2:0] != 3'd1 || pointer[30:BlockBits+3] != '0) begin
       // The pointer leads into the middle of a block, or out of the memory.
-      word_o = {1'b1, PayloadBits'(ErrorLeaf)};
+      word_o[PayloadBits]       = 1'b1;
+      word_o[$bits(leaf_t)-1:0] = ErrorLeaf;
     end else begin
       word_o[BlockBits-1:0] = pointer[BlockBits+2:3];
       if (lod_words) word_o[PayloadBits-1-:$bits(material_t)] = material_of(word_i);
