@@ -24,9 +24,9 @@ module voxrt_word_encoder
       word_o[PayloadBits]           = 1'b1;
       word_o[$bits(material_t)-1:0] = material_of(word_i);
     end else if (pointer[2:0] != 3'd1 || pointer[30:BlockBits+3] != '0) begin
-      // The pointer leads into the middle of a block, or out of the memory.
-      word_o[PayloadBits]       = 1'b1;
-      word_o[$bits(leaf_t)-1:0] = ErrorLeaf;
+      // The pointer leads into the middle of a block, or out of the memory: ErrorLeaf, whose highest bit is the error.
+      word_o[PayloadBits]     = 1'b1;
+      word_o[$bits(leaf_t)-1] = 1'b1;
     end else begin
       word_o[BlockBits-1:0] = pointer[BlockBits+2:3];
       if (lod_words) word_o[PayloadBits-1-:$bits(material_t)] = material_of(word_i);
