@@ -98,32 +98,17 @@ module voxrt_core
   output logic        m_axis_tuser,
   output logic        m_axis_tlast
 );
-  if (Lanes < 1 || Lanes > 255) begin : gen_bad_lanes
-    $error("voxrt_core: Lanes must be 1 to 255");
-  end
-  if (MaxDepth < 2 || MaxDepth > DepthLimit) begin : gen_bad_depth
-    $error("voxrt_core: MaxDepth must be 2 to 16 levels");
-  end
-  if (PositionBits < 6 || PositionBits > PositionLimit) begin : gen_bad_position
-    $error("voxrt_core: PositionBits must be 6 to 32 bits");
-  end
-  if (BlockBits < 5 || BlockBits > 24) begin : gen_bad_blocks
-    $error("voxrt_core: BlockBits must be 5 to 24 bits");
-  end
-  if (RayClocks != 1 && (RayClocks != 4 || Light || Mirrors || Lod)) begin : gen_bad_ray_clocks
+  if (Lanes < 1 || Lanes > 255) $error("voxrt_core: Lanes must be 1 to 255");
+  if (MaxDepth < 2 || MaxDepth > DepthLimit) $error("voxrt_core: MaxDepth must be 2 to 16 levels");
+  if (PositionBits < 6 || PositionBits > PositionLimit) $error("voxrt_core: PositionBits must be 6 to 32 bits");
+  if (BlockBits < 5 || BlockBits > 24) $error("voxrt_core: BlockBits must be 5 to 24 bits");
+  if (RayClocks != 1 && (RayClocks != 4 || Light || Mirrors || Lod))
     $error("voxrt_core: RayClocks must be 1, or 4 without Light, Mirrors and Lod");
-  end
-  if (MemoryForm > CachedForm) begin : gen_bad_form
-    $error("voxrt_core: MemoryForm must be 0, 1 or 2");
-  end
-  if (MemoryForm == CachedForm &&
-      (L1SetBits < 1 || L1SetBits >= BlockBits || L2SetBits < 1 || L2SetBits >= BlockBits)) begin : gen_bad_sets
+  if (MemoryForm > CachedForm) $error("voxrt_core: MemoryForm must be 0, 1 or 2");
+  if (MemoryForm == CachedForm && (L1SetBits < 1 || L1SetBits >= BlockBits || L2SetBits < 1 || L2SetBits >= BlockBits))
     $error("voxrt_core: L1SetBits and L2SetBits must be 1 bit or more, and less than BlockBits");
-  end
 
-  if (Lod && (Light || Mirrors)) begin : gen_bad_lod
-    $error("voxrt_core: Lod does not go with Light or Mirrors");
-  end
+  if (Lod && (Light || Mirrors)) $error("voxrt_core: Lod does not go with Light or Mirrors");
 
   voxrt_registers_pkg::voxrt_registers__in_t status;
   voxrt_registers_pkg::voxrt_registers__out_t control;

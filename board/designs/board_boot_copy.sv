@@ -17,9 +17,7 @@ module board_boot_copy
   output logic [255:0] data_o,
   input  logic         done_i
 );
-  if (BlockBits < 5 || BlockBits > 19) begin : gen_bad_block_bits
-    $error("board_boot_copy: BlockBits must be 5 to 19 bits");
-  end
+  if (BlockBits < 5 || BlockBits > 19) $error("board_boot_copy: BlockBits must be 5 to 19 bits");
 
   localparam int unsigned PayloadBits = payload_bits(BlockBits, 1'b0);
 

@@ -47,9 +47,7 @@ module board_bus
   output logic    [         31:0] table_data_o,
   input  logic    [         31:0] table_data_i
 );
-  if (MemoryClocks < 2) begin : gen_bad_memory_clocks
-    $error("board_bus: MemoryClocks must be 2 clocks or more");
-  end
+  if (MemoryClocks < 2) $error("board_bus: MemoryClocks must be 2 clocks or more");
 
   typedef enum logic [2:0] {
     Idle,

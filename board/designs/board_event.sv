@@ -12,9 +12,7 @@ module board_event #(
   output logic             received_o,   // For one clock, value_o from then on.
   output logic [Width-1:0] value_o
 );
-  if (Width < 1) begin : gen_bad_width
-    $error("board_event: Width must be 1 bit or more");
-  end
+  if (Width < 1) $error("board_event: Width must be 1 bit or more");
 
   logic toggle_q, toggle, last_q;
   logic [Width-1:0] value_q;

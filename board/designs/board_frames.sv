@@ -40,12 +40,8 @@ module board_frames
   input  logic          [          2:0] buttons_i,
   output logic          [          7:0] leds_o
 );
-  if (ClockHz < 1) begin : gen_bad_clock_hz
-    $error("board_frames: ClockHz must be 1 Hz or more");
-  end
-  if (LineBits < 4 || LineBits > 7) begin : gen_bad_lines
-    $error("board_frames: LineBits must be 4 to 7");
-  end
+  if (ClockHz < 1) $error("board_frames: ClockHz must be 1 Hz or more");
+  if (LineBits < 4 || LineBits > 7) $error("board_frames: LineBits must be 4 to 7");
 
   // The core's registers (rtl/registers.rdl).
   localparam logic [23:0] CoreControl = 24'h00000C;

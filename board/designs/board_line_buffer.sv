@@ -28,9 +28,7 @@ module board_line_buffer
   input  logic       [ 9:0] column_i,
   output logic       [23:0] pixel_o        // Three clocks after column_i.
 );
-  if (LineBits < 4 || LineBits > 7) begin : gen_bad_line_bits
-    $error("board_line_buffer: LineBits must be 4 to 7 bits");
-  end
+  if (LineBits < 4 || LineBits > 7) $error("board_line_buffer: LineBits must be 4 to 7 bits");
 
   localparam int unsigned ColumnBits = 10;
   localparam int unsigned Lines = 2 ** LineBits;

@@ -33,9 +33,7 @@ module board_memory_port
   input  logic                  done_i,
   input  logic    [255:0]       line_data_i
 );
-  if (Lines < 2 || Lines > 2 ** 20) begin : gen_bad_lines
-    $error("board_memory_port: Lines must be 2 to 2**20 lines");
-  end
+  if (Lines < 2 || Lines > 2 ** 20) $error("board_memory_port: Lines must be 2 to 2**20 lines");
 
   localparam logic [23:0] Page = 24'h001030;
   localparam logic [23:0] Blocks = 24'h001034;

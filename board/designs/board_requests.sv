@@ -23,9 +23,7 @@ module board_requests
   output logic           request_done_o,
   output logic           request_bad_o
 );
-  if (GapBits < 1 || GapBits > 32) begin : gen_bad_gap_bits
-    $error("board_requests: GapBits must be 1 to 32 bits");
-  end
+  if (GapBits < 1 || GapBits > 32) $error("board_requests: GapBits must be 1 to 32 bits");
 
   localparam logic [7:0] RequestMark = 8'h56;
   localparam logic [7:0] AnswerMark = 8'h76;

@@ -34,12 +34,8 @@ module board_sdram #(
   output logic [ 15:0] sdram_dq_o,
   input  logic [ 15:0] sdram_dq_i
 );
-  if (ClockHz < 12_000_000 || ClockHz > 80_000_000) begin : gen_bad_clock_hz
-    $error("board_sdram: ClockHz must be 12 to 80 million");
-  end
-  if (PowerOnUs < 1 || PowerOnUs > 50_000) begin : gen_bad_power_on_us
-    $error("board_sdram: PowerOnUs must be 1 to 50,000 us");
-  end
+  if (ClockHz < 12_000_000 || ClockHz > 80_000_000) $error("board_sdram: ClockHz must be 12 to 80 million");
+  if (PowerOnUs < 1 || PowerOnUs > 50_000) $error("board_sdram: PowerOnUs must be 1 to 50,000 us");
 
   localparam int unsigned PowerOnClocks = (ClockHz / 1000) * PowerOnUs / 1000;
   // 8192 rows in 64 ms, less what the lines under way take.

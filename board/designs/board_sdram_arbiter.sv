@@ -25,9 +25,7 @@ module board_sdram_arbiter #(
   output logic [    255:0]        request_data_o,
   input  logic                    done_i
 );
-  if (Ports < 2) begin : gen_bad_ports
-    $error("board_sdram_arbiter: Ports must be 2 or more");
-  end
+  if (Ports < 2) $error("board_sdram_arbiter: Ports must be 2 or more");
 
   localparam int unsigned PortBits = $clog2(Ports);
   localparam int unsigned UnderWayBits = 2;  // The controller has three lines at most.

@@ -9,9 +9,7 @@ module board_serializer #(
   input  logic [Channels-1:0][9:0] words_i,       // Bit 0 goes first.
   output logic [Channels-1:0]      pins_o
 );
-  if (Channels < 1) begin : gen_bad_channels
-    $error("board_serializer: Channels must be 1 or more");
-  end
+  if (Channels < 1) $error("board_serializer: Channels must be 1 or more");
 
   logic pixel_toggle_q;
   always_ff @(posedge pixel_clk_i) pixel_toggle_q <= pixel_rst_ni && !pixel_toggle_q;

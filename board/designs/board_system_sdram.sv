@@ -50,9 +50,7 @@ module board_system_sdram
   input  logic             pixel_rst_ni,
   output logic [ 2:0][9:0] words_o         // DVI: blue, green, red.
 );
-  if (MemoryForm != CachedForm) begin : gen_bad_form
-    $error("board_system_sdram: MemoryForm must be 2, behind caches");
-  end
+  if (MemoryForm != CachedForm) $error("board_system_sdram: MemoryForm must be 2, behind caches");
 
   // Ports of the arbiter: the screen, the core's two, words of the host and of lists, the boot scene, the core's pixels.
   localparam int unsigned Screen = 0;

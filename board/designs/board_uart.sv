@@ -16,12 +16,8 @@ module board_uart #(
   input  logic [7:0] byte_i,
   output logic       tx_o
 );
-  if (Baud > ClockHz / 8) begin : gen_bad_clock_hz
-    $error("board_uart: ClockHz and Baud must be in a ratio of 8 or more");
-  end
-  if (Baud < 300) begin : gen_bad_baud
-    $error("board_uart: Baud must be 300 or more");
-  end
+  if (Baud > ClockHz / 8) $error("board_uart: ClockHz and Baud must be in a ratio of 8 or more");
+  if (Baud < 300) $error("board_uart: Baud must be 300 or more");
 
   // The part of a bit per clock, in 1/2**PhaseBits: the baud is met within 1 in 2**16.
   localparam int unsigned PhaseBits = 20;

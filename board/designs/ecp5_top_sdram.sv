@@ -45,12 +45,8 @@ module ecp5_top_sdram #(
   output logic [      1:0] sdram_dqm,
   inout  wire  [     15:0] sdram_d
 );
-  if (Leds < 1 || Leds > 8) begin : gen_bad_leds
-    $error("ecp5_top_sdram: Leds must be 1 to 8");
-  end
-  if (Highs < 1) begin : gen_bad_highs
-    $error("ecp5_top_sdram: Highs must be 1 or more");
-  end
+  if (Leds < 1 || Leds > 8) $error("ecp5_top_sdram: Leds must be 1 to 8");
+  if (Highs < 1) $error("ecp5_top_sdram: Highs must be 1 or more");
 
   logic bit_clk, pixel_clk, system_clk, chip_clk, locked;
 

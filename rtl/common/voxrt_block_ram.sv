@@ -20,12 +20,8 @@ module voxrt_block_ram #(
   input  logic [$clog2(Depth)-1:0] b_row_i,
   output logic [        Width-1:0] b_data_o
 );
-  if (Width < 1) begin : gen_bad_width
-    $error("voxrt_block_ram: Width must be 1 bit or more");
-  end
-  if (Depth < 2) begin : gen_bad_depth
-    $error("voxrt_block_ram: Depth must be 2 rows or more");
-  end
+  if (Width < 1) $error("voxrt_block_ram: Width must be 1 bit or more");
+  if (Depth < 2) $error("voxrt_block_ram: Depth must be 2 rows or more");
 
   // Without no_rw_check, yosys would build the memory twice. Public, so that a simulation can fill it at once.
   (* no_rw_check *)

@@ -14,15 +14,9 @@ module voxrt_collect #(
   input  logic [Width-1:0] result_i,
   output logic [Width-1:0] results_o[3]
 );
-  if (Width < 1) begin : gen_bad_width
-    $error("voxrt_collect: Width must be 1 bit or more");
-  end
-  if (Clocks < 2 || Clocks > 3) begin : gen_bad_clocks
-    $error("voxrt_collect: Clocks must be 2 or 3 clocks");
-  end
-  if (Beats < 2) begin : gen_bad_beats
-    $error("voxrt_collect: Beats must be 2 beats or more");
-  end
+  if (Width < 1) $error("voxrt_collect: Width must be 1 bit or more");
+  if (Clocks < 2 || Clocks > 3) $error("voxrt_collect: Clocks must be 2 or 3 clocks");
+  if (Beats < 2) $error("voxrt_collect: Beats must be 2 beats or more");
 
   localparam logic [1:0] FirstTurn = 2'(Clocks);
   localparam logic [1:0] SecondTurn = 2'(Clocks + 1);

@@ -16,12 +16,8 @@ module voxrt_divide #(
   input logic [DivisorBits-1:0] divisor_i,
   output logic [QuotientBits-1:0] quotient_o  // QuotientBits clocks later.
 );
-  if (DivisorBits < 1) begin : gen_bad_divisor_bits
-    $error("voxrt_divide: DivisorBits must be 1 bit or more");
-  end
-  if (QuotientBits < 2) begin : gen_bad_quotient_bits
-    $error("voxrt_divide: QuotientBits must be 2 bits or more");
-  end
+  if (DivisorBits < 1) $error("voxrt_divide: DivisorBits must be 1 bit or more");
+  if (QuotientBits < 2) $error("voxrt_divide: QuotientBits must be 2 bits or more");
 
   // Before stage s: the remainder (highest bit: negative), then the dividend's bits to come and the quotient's so far.
   logic [DivisorBits:0] remainder[QuotientBits+1];

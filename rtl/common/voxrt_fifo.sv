@@ -19,12 +19,8 @@ module voxrt_fifo #(
   input  logic             ready_i,
   output logic [Width-1:0] data_o
 );
-  if (Width < 1) begin : gen_bad_width
-    $error("voxrt_fifo: Width must be 1 bit or more");
-  end
-  if (Depth < 2 || 2 ** $clog2(Depth) != Depth) begin : gen_bad_depth
-    $error("voxrt_fifo: Depth must be a power of two, 2 or more");
-  end
+  if (Width < 1) $error("voxrt_fifo: Width must be 1 bit or more");
+  if (Depth < 2 || 2 ** $clog2(Depth) != Depth) $error("voxrt_fifo: Depth must be a power of two, 2 or more");
 
   localparam int unsigned IndexBits = $clog2(Depth);
 

@@ -17,9 +17,7 @@ module voxrt_free_list #(
   input  logic               free_i,
   input  logic [RowBits-1:0] row_i
 );
-  if (RowBits < 1) begin : gen_bad_row_bits
-    $error("voxrt_free_list: RowBits must be 1 bit or more");
-  end
+  if (RowBits < 1) $error("voxrt_free_list: RowBits must be 1 bit or more");
 
   logic [RowBits-1:0] freed_q[2 ** RowBits];
   logic [RowBits-1:0] allocate_q, free_q;

@@ -18,15 +18,9 @@ module voxrt_multiply
   input  logic [      BBits-1:0] b_i,
   output logic [ABits+BBits-1:0] product_o
 );
-  if (ABits < 1) begin : gen_bad_a_bits
-    $error("voxrt_multiply: ABits must be 1 bit or more");
-  end
-  if (BBits < 1) begin : gen_bad_b_bits
-    $error("voxrt_multiply: BBits must be 1 bit or more");
-  end
-  if (LogicBits >= ABits) begin : gen_bad_logic_bits
-    $error("voxrt_multiply: LogicBits must be less than ABits");
-  end
+  if (ABits < 1) $error("voxrt_multiply: ABits must be 1 bit or more");
+  if (BBits < 1) $error("voxrt_multiply: BBits must be 1 bit or more");
+  if (LogicBits >= ABits) $error("voxrt_multiply: LogicBits must be less than ABits");
 
   localparam int unsigned ProductBits = ABits + BBits;
 

@@ -17,12 +17,10 @@ module voxrt_plane_time
   input  logic        [  WeightBits-1:0] weight_i,
   output logic signed [    TimeBits-1:0] time_o
 );
-  if (DistanceBits < 2 || DistanceBits > DistanceLimit) begin : gen_bad_distance_bits
+  if (DistanceBits < 2 || DistanceBits > DistanceLimit)
     $error("voxrt_plane_time: DistanceBits must be 2 to DistanceLimit bits");
-  end
-  if (TimeBits < 18 || TimeBits > DistanceBits + WeightBits) begin : gen_bad_time_bits
+  if (TimeBits < 18 || TimeBits > DistanceBits + WeightBits)
     $error("voxrt_plane_time: TimeBits must be 18 to DistanceBits + WeightBits bits");
-  end
 
   if (MultiplierBits >= 25) begin : gen_wide
     localparam int unsigned LowBits = 17;

@@ -19,9 +19,7 @@ module voxrt_stream_register #(
   input  logic             ready_i,
   output logic [Width-1:0] data_o
 );
-  if (Width < 1) begin : gen_bad_width
-    $error("voxrt_stream_register: Width must be 1 bit or more");
-  end
+  if (Width < 1) $error("voxrt_stream_register: Width must be 1 bit or more");
 
   logic valid_q;
   logic [Width-1:0] data_q;

@@ -53,18 +53,11 @@ module voxrt_buffered_lane
   output logic bad_pointer_o,
   output logic step_limit_o
 );
-  if (MemoryClocks < 2 || MemoryClocks > 5) begin : gen_bad_memory_clocks
-    $error("voxrt_buffered_lane: MemoryClocks must be 2 to 5 clocks");
-  end
-  if (RowBits < 5 || RowBits > RowLimit) begin : gen_bad_row_bits
-    $error("voxrt_buffered_lane: RowBits must be 5 or 6 bits");
-  end
-  if (RayDepth < 2 || RayDepth > 2 ** RowBits || 2 ** $clog2(RayDepth) != RayDepth) begin : gen_bad_ray_depth
+  if (MemoryClocks < 2 || MemoryClocks > 5) $error("voxrt_buffered_lane: MemoryClocks must be 2 to 5 clocks");
+  if (RowBits < 5 || RowBits > RowLimit) $error("voxrt_buffered_lane: RowBits must be 5 or 6 bits");
+  if (RayDepth < 2 || RayDepth > 2 ** RowBits || 2 ** $clog2(RayDepth) != RayDepth)
     $error("voxrt_buffered_lane: RayDepth must be a power of two, 2 to 2**RowBits");
-  end
-  if (CreditClocks < 1 || CreditClocks > 3) begin : gen_bad_credit_clocks
-    $error("voxrt_buffered_lane: CreditClocks must be 1 to 3 clocks");
-  end
+  if (CreditClocks < 1 || CreditClocks > 3) $error("voxrt_buffered_lane: CreditClocks must be 1 to 3 clocks");
 
   localparam int unsigned OriginBits = distance_bits(MaxDepth, PositionBits);
   localparam int unsigned KeyBits = key_bits(MaxDepth, Light);

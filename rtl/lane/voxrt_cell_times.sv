@@ -44,12 +44,8 @@ module voxrt_cell_times
   output logic signed [distance_bits(MaxDepth, PositionBits)-FractionBits-1:0] near2_o[3],
   output logic [distance_bits(MaxDepth, PositionBits)-FractionBits-1:0] reach3_o
 );
-  if (Slots < 12 || Slots > 15) begin : gen_bad_slots
-    $error("voxrt_cell_times: Slots must be 12 to 15");
-  end
-  if (RowBits < 5 || RowBits > RowLimit) begin : gen_bad_row_bits
-    $error("voxrt_cell_times: RowBits must be 5 or 6 bits");
-  end
+  if (Slots < 12 || Slots > 15) $error("voxrt_cell_times: Slots must be 12 to 15");
+  if (RowBits < 5 || RowBits > RowLimit) $error("voxrt_cell_times: RowBits must be 5 or 6 bits");
 
   localparam int unsigned OriginBits = distance_bits(MaxDepth, PositionBits);
   localparam int unsigned KeyBits = key_bits(MaxDepth, Light);

@@ -78,12 +78,8 @@ module voxrt_lane
   output logic bad_pointer_o,
   output logic step_limit_o
 );
-  if (MemoryClocks < 2 || MemoryClocks > 5) begin : gen_bad_memory_clocks
-    $error("voxrt_lane: MemoryClocks must be 2 to 5 clocks");
-  end
-  if (RowBits < 5 || RowBits > RowLimit) begin : gen_bad_row_bits
-    $error("voxrt_lane: RowBits must be 5 or 6 bits");
-  end
+  if (MemoryClocks < 2 || MemoryClocks > 5) $error("voxrt_lane: MemoryClocks must be 2 to 5 clocks");
+  if (RowBits < 5 || RowBits > RowLimit) $error("voxrt_lane: RowBits must be 5 or 6 bits");
 
   localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
   localparam int unsigned KeyBits = key_bits(MaxDepth, Light);

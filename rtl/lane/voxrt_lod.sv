@@ -21,12 +21,8 @@ module voxrt_lod
   output logic                        stops_o,
   output material_t                   mean_o
 );
-  if (LevelBits < 1) begin : gen_bad_level_bits
-    $error("voxrt_lod: LevelBits must be 1 bit or more");
-  end
-  if (WholeBits < 2 || WholeBits > ReachLimit) begin : gen_bad_whole_bits
-    $error("voxrt_lod: WholeBits must be 2 to ReachLimit bits");
-  end
+  if (LevelBits < 1) $error("voxrt_lod: LevelBits must be 1 bit or more");
+  if (WholeBits < 2 || WholeBits > ReachLimit) $error("voxrt_lod: WholeBits must be 2 to ReachLimit bits");
 
   // 2: the farthest near plane. The cell of the origin has none ahead: its distance counts as 0.
   logic signed [WholeBits-1:0] farther, farthest;

@@ -33,12 +33,8 @@ module voxrt_pixel_buffer #(
   output logic                   lit_o,
   output logic [      Width-1:0] pixel_o
 );
-  if (Width < 1) begin : gen_bad_width
-    $error("voxrt_pixel_buffer: Width must be 1 bit or more");
-  end
-  if (Depth < 4 || 2 ** $clog2(Depth) != Depth) begin : gen_bad_depth
-    $error("voxrt_pixel_buffer: Depth must be a power of two, 4 or more");
-  end
+  if (Width < 1) $error("voxrt_pixel_buffer: Width must be 1 bit or more");
+  if (Depth < 4 || 2 ** $clog2(Depth) != Depth) $error("voxrt_pixel_buffer: Depth must be a power of two, 4 or more");
 
   localparam int unsigned IndexBits = $clog2(Depth);
   localparam int unsigned TagBits = IndexBits + 1;

@@ -23,9 +23,7 @@ module voxrt_reflect
   output logic                                ends_o,            // It was reflected often enough: it shows mirrors_o.
   output mirrors_t                            mirrors_o
 );
-  if (Slots < 12 || Slots > 15) begin : gen_bad_slots
-    $error("voxrt_reflect: Slots must be 12 to 15");
-  end
+  if (Slots < 12 || Slots > 15) $error("voxrt_reflect: Slots must be 12 to 15");
 
   material_entry_t table_q[256];
   material_entry_t entry4_q, entry5_q, entry6_q, entry7_q;

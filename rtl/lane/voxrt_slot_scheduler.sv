@@ -60,9 +60,7 @@ module voxrt_slot_scheduler
   input  material_t                                                  point_material_i,
   input  logic                                                       hit_point_ready_i
 );
-  if (Slots < 12 || Slots > 15) begin : gen_bad_slots
-    $error("voxrt_slot_scheduler: Slots must be 12 to 15");
-  end
+  if (Slots < 12 || Slots > 15) $error("voxrt_slot_scheduler: Slots must be 12 to 15");
 
   localparam int unsigned PointBits = MaxDepth + FractionBits;
   localparam int unsigned DetailBits = detail_bits(MaxDepth, Light, Mirrors);

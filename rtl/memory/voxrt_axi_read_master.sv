@@ -29,12 +29,9 @@ module voxrt_axi_read_master
   output axi_read_request_t          axi_o,
   input  axi_read_response_t         axi_i
 );
-  if (UnderWay < 2 || UnderWay > 256 || 2 ** $clog2(UnderWay) != UnderWay) begin : gen_bad_under_way
+  if (UnderWay < 2 || UnderWay > 256 || 2 ** $clog2(UnderWay) != UnderWay)
     $error("voxrt_axi_read_master: UnderWay must be a power of two, 2 to 256");
-  end
-  if (TimeoutBits < 1 || TimeoutBits > 32) begin : gen_bad_timeout_bits
-    $error("voxrt_axi_read_master: TimeoutBits must be 1 to 32 bits");
-  end
+  if (TimeoutBits < 1 || TimeoutBits > 32) $error("voxrt_axi_read_master: TimeoutBits must be 1 to 32 bits");
 
   localparam int unsigned CountBits = $clog2(UnderWay) + 1;
   localparam logic [CountBits-1:0] One = CountBits'(1);

@@ -37,9 +37,7 @@ module voxrt_cached_memory
   input axi_read_response_t axi_i[BusPorts],
   output memory_events_t events_o
 );
-  if (TimeoutBits < 1 || TimeoutBits > 32) begin : gen_bad_timeout_bits
-    $error("voxrt_cached_memory: TimeoutBits must be 1 to 32 bits");
-  end
+  if (TimeoutBits < 1 || TimeoutBits > 32) $error("voxrt_cached_memory: TimeoutBits must be 1 to 32 bits");
 
   localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
 

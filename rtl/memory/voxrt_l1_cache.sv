@@ -45,15 +45,10 @@ module voxrt_l1_cache
   input logic [1:0] answer_quarter_i,
   input logic [1:0][payload_bits(BlockBits, Lod):0] answer_pair_i
 );
-  if (SetBits < 1 || SetBits >= BlockBits) begin : gen_bad_set_bits
+  if (SetBits < 1 || SetBits >= BlockBits)
     $error("voxrt_l1_cache: SetBits must be 1 bit or more, and less than BlockBits");
-  end
-  if (Ways != 1 && Ways != 2 && Ways != 4) begin : gen_bad_ways
-    $error("voxrt_l1_cache: Ways must be 1, 2 or 4");
-  end
-  if (TurnClocks < 2) begin : gen_bad_turn_clocks
-    $error("voxrt_l1_cache: TurnClocks must be 2 clocks or more");
-  end
+  if (Ways != 1 && Ways != 2 && Ways != 4) $error("voxrt_l1_cache: Ways must be 1, 2 or 4");
+  if (TurnClocks < 2) $error("voxrt_l1_cache: TurnClocks must be 2 clocks or more");
 
   localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
   localparam int unsigned WordBits = PayloadBits + 1;

@@ -41,12 +41,9 @@ module voxrt_l2_cache
   output logic fill_ready_o,
   input logic [7:0][payload_bits(BlockBits, Lod):0] fill_words_i
 );
-  if (SetBits < 1 || SetBits >= BlockBits) begin : gen_bad_set_bits
+  if (SetBits < 1 || SetBits >= BlockBits)
     $error("voxrt_l2_cache: SetBits must be 1 bit or more, and less than BlockBits");
-  end
-  if (Misses < 2 || 2 ** $clog2(Misses) != Misses) begin : gen_bad_misses
-    $error("voxrt_l2_cache: Misses must be a power of two, 2 or more");
-  end
+  if (Misses < 2 || 2 ** $clog2(Misses) != Misses) $error("voxrt_l2_cache: Misses must be a power of two, 2 or more");
 
   localparam int unsigned Ways = 4;
   localparam int unsigned Pipes = Lanes > 1 ? 2 : 1;

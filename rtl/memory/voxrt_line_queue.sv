@@ -19,18 +19,10 @@ module voxrt_line_queue #(
   output logic [        1:0]               quarter_o,
   output logic [        1:0][WordBits-1:0] pair_o      // Words 2 * quarter_o and the next.
 );
-  if (Lanes < 1) begin : gen_bad_lanes
-    $error("voxrt_line_queue: Lanes must be 1 or more");
-  end
-  if (SetBits < 1) begin : gen_bad_set_bits
-    $error("voxrt_line_queue: SetBits must be 1 bit or more");
-  end
-  if (WordBits < 1) begin : gen_bad_word_bits
-    $error("voxrt_line_queue: WordBits must be 1 bit or more");
-  end
-  if (Depth < 2 || 2 ** $clog2(Depth) != Depth) begin : gen_bad_depth
-    $error("voxrt_line_queue: Depth must be a power of two, 2 or more");
-  end
+  if (Lanes < 1) $error("voxrt_line_queue: Lanes must be 1 or more");
+  if (SetBits < 1) $error("voxrt_line_queue: SetBits must be 1 bit or more");
+  if (WordBits < 1) $error("voxrt_line_queue: WordBits must be 1 bit or more");
+  if (Depth < 2 || 2 ** $clog2(Depth) != Depth) $error("voxrt_line_queue: Depth must be a power of two, 2 or more");
 
   logic valid, ready;
   logic [Lanes-1:0] lanes;

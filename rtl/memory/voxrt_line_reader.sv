@@ -28,9 +28,7 @@ module voxrt_line_reader
   output axi_read_request_t axi_o[BusPorts],
   input axi_read_response_t axi_i[BusPorts]
 );
-  if (TimeoutBits < 1 || TimeoutBits > 32) begin : gen_bad_timeout_bits
-    $error("voxrt_line_reader: TimeoutBits must be 1 to 32 bits");
-  end
+  if (TimeoutBits < 1 || TimeoutBits > 32) $error("voxrt_line_reader: TimeoutBits must be 1 to 32 bits");
 
   localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
   localparam int unsigned UnderWay = 16;

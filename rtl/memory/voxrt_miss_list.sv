@@ -38,18 +38,11 @@ module voxrt_miss_list #(
   input  logic                 free_i,
   output logic [PipeLanes-1:0] free_lanes_o [Pipes]
 );
-  if (Pipes < 1 || Pipes > 2) begin : gen_bad_pipes
-    $error("voxrt_miss_list: Pipes must be 1 or 2");
-  end
-  if (PipeLanes < 1) begin : gen_bad_pipe_lanes
-    $error("voxrt_miss_list: PipeLanes must be 1 or more");
-  end
-  if (LineBits < 1) begin : gen_bad_line_bits
-    $error("voxrt_miss_list: LineBits must be 1 bit or more");
-  end
-  if (Entries < 2 || 2 ** $clog2(Entries) != Entries) begin : gen_bad_entries
+  if (Pipes < 1 || Pipes > 2) $error("voxrt_miss_list: Pipes must be 1 or 2");
+  if (PipeLanes < 1) $error("voxrt_miss_list: PipeLanes must be 1 or more");
+  if (LineBits < 1) $error("voxrt_miss_list: LineBits must be 1 bit or more");
+  if (Entries < 2 || 2 ** $clog2(Entries) != Entries)
     $error("voxrt_miss_list: Entries must be a power of two, 2 or more");
-  end
 
   localparam int unsigned IndexBits = $clog2(Entries);
   typedef logic [IndexBits-1:0] index_t;

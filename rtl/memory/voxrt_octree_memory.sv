@@ -51,9 +51,8 @@ module voxrt_octree_memory
 );
   localparam int unsigned AddressBits = BlockBits + 3;
 
-  if (MemoryForm != PrivateForm && File != "") begin : gen_bad_file
+  if (MemoryForm != PrivateForm && File != "")
     $error("voxrt_octree_memory: only private copies can hold words from the beginning");
-  end
 
   if (MemoryForm == CachedForm) begin : gen_cached
     logic unused_access;

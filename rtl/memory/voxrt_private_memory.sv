@@ -25,12 +25,8 @@ module voxrt_private_memory #(
   output logic [      Lanes-1:0] ack_o,
   output logic [  PayloadBits:0] word_o          [Lanes]
 );
-  if (AddressBits < 1) begin : gen_bad_address_bits
-    $error("voxrt_private_memory: AddressBits must be 1 bit or more");
-  end
-  if (PayloadBits < 9) begin : gen_bad_payload_bits
-    $error("voxrt_private_memory: PayloadBits must be 9 bits or more");
-  end
+  if (AddressBits < 1) $error("voxrt_private_memory: AddressBits must be 1 bit or more");
+  if (PayloadBits < 9) $error("voxrt_private_memory: PayloadBits must be 9 bits or more");
 
   localparam int unsigned Copies = (Lanes + 1) / 2;
 

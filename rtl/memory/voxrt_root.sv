@@ -25,9 +25,7 @@ module voxrt_root
   input  logic                                  ack_i,
   input  logic [payload_bits(BlockBits, Lod):0] word_i
 );
-  if (MemoryClocks < 2 || MemoryClocks > 5) begin : gen_bad_memory_clocks
-    $error("voxrt_root: MemoryClocks must be 2 to 5 clocks");
-  end
+  if (MemoryClocks < 2 || MemoryClocks > 5) $error("voxrt_root: MemoryClocks must be 2 to 5 clocks");
 
   localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
   localparam int unsigned AddressBits = BlockBits + 3;

@@ -31,9 +31,8 @@ module voxrt_light
   output shadow_ray_t                      shadow_ray_o,
   output light_planes_t                    light_planes_o
 );
-  if (QueueDepth < 2 || 2 ** $clog2(QueueDepth) != QueueDepth) begin : gen_bad_queue_depth
+  if (QueueDepth < 2 || 2 ** $clog2(QueueDepth) != QueueDepth)
     $error("voxrt_light: QueueDepth must be a power of two, 2 or more");
-  end
 
   localparam int unsigned CountBits = $clog2(QueueDepth) + 1;
   localparam int unsigned HitBits = MaxDepth + FractionBits;

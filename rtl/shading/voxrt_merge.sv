@@ -18,9 +18,7 @@ module voxrt_merge #(
   input  logic             ready_i,
   output logic [Width-1:0] pixel_o
 );
-  if (Width < 1) begin : gen_bad_width
-    $error("voxrt_merge: Width must be 1 bit or more");
-  end
+  if (Width < 1) $error("voxrt_merge: Width must be 1 bit or more");
 
   logic [Lanes-1:0] next_lane_q;  // One-hot.
   logic valid;

@@ -19,9 +19,7 @@ module voxrt_strip_buffer
   input  logic                ready_i,
   output logic [   Width-1:0] pixel_o
 );
-  if (Width < 1) begin : gen_bad_width
-    $error("voxrt_strip_buffer: Width must be 1 bit or more");
-  end
+  if (Width < 1) $error("voxrt_strip_buffer: Width must be 1 bit or more");
 
   localparam int unsigned StripBits = strip_bits(Lanes);
   localparam int unsigned QueueDepth = 8;
