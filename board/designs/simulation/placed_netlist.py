@@ -213,7 +213,7 @@ class _Writer:
             factor = f"{side.lower()}{number}"
             bits = ", ".join(self.value(cell, f"{side}{i}") for i in reversed(range(18)))
             self._multiplier_value(cell, f"INPUT{side}", factor, 18, f"{{{bits}}}")
-            # Of 36 bits, so that the product's 36 bits are right whether a factor has a sign or not.
+            # The factors have 36 bits, so that the product's 36 bits are right whether a factor has a sign or not.
             sign = f"{factor}[17]" if signed else "1'b0"
             factors.append(f"{{{{18{{{sign}}}}}, {factor}}}")
         self._multiplier_value(cell, "OUTPUT", f"p{number}", 36, f"{factors[0]} * {factors[1]}")
