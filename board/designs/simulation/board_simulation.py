@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _HERE = Path(__file__).resolve().parent
-_CELLS = {"ecp5_cells.sv"}
 _CHIPS = {"ecp5_top_sdram"}  # Tops whose pins need an SDRAM ...
 _CHIP = (_HERE / "sdram_model.sv", _HERE / "sdram_board.sv")  # ... as here.
 
@@ -74,8 +73,7 @@ def compile_sources(
     numbers = {**parameters(board), **more} if top is None else more
     settings = [f"-G{name}={value}" for name, value in numbers.items()]
     settings += ['-GOctreeFile="octree.hex"', '-GTableFile="table.hex"']
-    models = _HERE / "ecp5_models.sv"
-    sources = [models if path.name in _CELLS else path for path in list_sources(top_of(board))]
+    sources = list_sources(top_of(board))
     if top is None and top_of(board) in _CHIPS:
         sources, top = [*sources, *_CHIP], _CHIP[-1].stem
     return compile_verilog(

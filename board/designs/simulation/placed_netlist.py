@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
 _HERE = Path(__file__).resolve().parent
-MODELS = (_HERE / "ecp5_models.sv", _HERE / "placed_ram.v")
+MODELS = (_HERE.parent / "ecp5_cells.sv", _HERE / "placed_ram.v")
 """The models of PLL, output register and block RAM that the Verilog needs."""
 
 _PIN_WIDTHS = {"AD": 14, "DI": 18, "DO": 18}
