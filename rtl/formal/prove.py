@@ -29,10 +29,7 @@ PROOFS = {
 }
 
 # What a module is made of.
-PARTS = {
-    "voxrt_pixel_buffer": ("voxrt_fifo",),
-    "voxrt_l1_cache": ("voxrt_fifo", "voxrt_block_ram", "voxrt_line_queue"),
-}
+PARTS = {"voxrt_pixel_buffer": ("voxrt_fifo",), "voxrt_l1_cache": ("voxrt_fifo", "voxrt_block_ram", "voxrt_line_queue")}
 
 # Their memories are so small that the solver is faster with registers.
 SMALL_MEMORIES = {"voxrt_axi_read_master", "voxrt_miss_list", "voxrt_l1_cache"}

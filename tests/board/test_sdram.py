@@ -56,11 +56,7 @@ def test_four_ports_read_what_was_written(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("rule", "parameters"),
-    [
-        ("tRCD", {"TrcdPs": 30_000}),
-        ("refresh is late", {"RefreshPs": 6_000_000}),
-    ],
+    ("rule", "parameters"), [("tRCD", {"TrcdPs": 30_000}), ("refresh is late", {"RefreshPs": 6_000_000})]
 )
 def test_the_model_stops_at_a_broken_rule(rule, parameters, tmp_path):
     finished = run_bench(tmp_path, 20_000, **parameters)

@@ -118,10 +118,5 @@ def test_yosys(reader, plain, tmp_path):
 
 
 def test_every_row_is_of_a_tool_that_these_tests_know():
-    assert {tool for tool, _ in ROWS} == {
-        "Verilator",
-        "Icarus Verilog",
-        "yosys, `read_slang`",
-        "yosys, `read_verilog`",
-    }
+    assert {tool for tool, _ in ROWS} == {"Verilator", "Icarus Verilog", "yosys, `read_slang`", "yosys, `read_verilog`"}
     assert len(ROWS) == 5
