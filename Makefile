@@ -100,9 +100,9 @@ comma := ,
 # GCC leaves numbers that do not fit their integer out of "undefined".
 UNDEFINED := undefined,float-cast-overflow
 sanitized = $(CXX) -std=c++20 -O1 -g -Wall -Wextra -fno-sanitize-recover=all -fsanitize=$(subst undefined,$(UNDEFINED),$(subst -,$(comma),$*)) -I$(CURDIR)/build/sanitize/include
-HEADERS := $(wildcard voxelize/src/*.h voxelize/src/*/*.h octree/src/*.h sim/src/model/*.h sim/src/bake/*.h)
+HEADERS := $(wildcard voxelize/src/*/*.h octree/src/*/*.h sim/src/*/*/*.h)
 # $(call sources,FOLDER): what a folder has besides its bindings for Python.
-sources = $(filter-out %/module.cpp %_bindings.cpp,$(wildcard $(1)/src/*.cpp $(1)/src/*/*.cpp))
+sources = $(filter-out %/module.cpp %_bindings.cpp,$(wildcard $(1)/src/*/*.cpp))
 # $(call archive,FOLDER): the library of a folder's sources.
 define archive
 @rm -rf $(@:.a=) && mkdir -p $(@:.a=)
@@ -125,10 +125,10 @@ build/sanitize/%/liboctree.a: $(call sources,octree) $(HEADERS) | build/sanitize
 	$(call archive,octree)
 
 # Those of sim/src/model and sim/src/bake; some are for processors that have certain instructions.
-SIM := $(filter-out %/module.cpp %_bindings.cpp %_avx2.cpp %_avx512.cpp,$(wildcard sim/src/model/*.cpp sim/src/bake/*.cpp))
+SIM := $(filter-out %/module.cpp %_bindings.cpp %_avx2.cpp %_avx512.cpp,$(wildcard sim/src/model/*/*.cpp sim/src/bake/*/*.cpp))
 ifeq ($(shell uname -m),x86_64)
-SIM_AVX2 := $(wildcard sim/src/model/*_avx2.cpp sim/src/bake/*_avx2.cpp)
-SIM_AVX512 := $(wildcard sim/src/model/*_avx512.cpp sim/src/bake/*_avx512.cpp)
+SIM_AVX2 := $(wildcard sim/src/model/*/*_avx2.cpp sim/src/bake/*/*_avx2.cpp)
+SIM_AVX512 := $(wildcard sim/src/model/*/*_avx512.cpp sim/src/bake/*/*_avx512.cpp)
 endif
 build/sanitize/%/libsim.a: $(SIM) $(SIM_AVX2) $(SIM_AVX512) $(HEADERS) | build/sanitize/include/voxrt
 	@rm -rf $(@:.a=) && mkdir -p $(@:.a=)
@@ -146,13 +146,13 @@ build/sanitize/%/bake: tests/sim/native/bake.cpp build/sanitize/%/libsim.a build
 	$(sanitized) -o $@ $^ -pthread
 
 build/sanitize/%/voxelize: tests/voxelize/native/exercise.cpp build/sanitize/%/libvoxelize.a
-	$(sanitized) -Ivoxelize/src -o $@ $^ -pthread
+	$(sanitized) -o $@ $^ -pthread
 
 build/sanitize/%/colour: tests/voxelize/native/colour.cpp build/sanitize/%/libvoxelize.a
-	$(sanitized) -Ivoxelize/src -o $@ $^ -pthread
+	$(sanitized) -o $@ $^ -pthread
 
 build/sanitize/%/octree: tests/octree/native/exercise.cpp build/sanitize/%/liboctree.a build/sanitize/%/libvoxelize.a
-	$(sanitized) -Ioctree/src -o $@ $^ -pthread
+	$(sanitized) -o $@ $^ -pthread
 
 build/sanitize/%/mesh_to_ray: examples/cpp/mesh_to_ray.cpp build/sanitize/%/liboctree.a build/sanitize/%/libvoxelize.a
 	$(sanitized) -o $@ $^ -pthread
@@ -173,7 +173,7 @@ build/fuzz/native/objects/%.o: %.cpp $(HEADERS) | build/sanitize/include/voxrt
 	$(covered) -fsanitize-coverage=trace-pc -c -o $@ $<
 
 build/fuzz/native/%-fuzzer: tests/fuzz/native/%.cpp tests/fuzz/native/driver.cpp tests/fuzz/native/driver.h $(COVERED)
-	$(covered) -Itests/fuzz/native -I$*/src -o $@ $(filter tests/%.cpp,$^) $(COVERED) -pthread
+	$(covered) -Itests/fuzz/native -o $@ $(filter tests/%.cpp,$^) $(COVERED) -pthread
 
 .SECONDARY: $(COVERED) $(foreach library,libvoxelize liboctree libsim,$(SANITIZERS:%=build/sanitize/%/$(library).a))
 

@@ -12,6 +12,8 @@
 // Compiled with -DAS_PUBLISHED it handles its data as the appendix does: coordinates are heap-allocated vectors, passed
 // and returned by value, and an octant's number is read from a string of binary digits. Without, it is the algorithm at
 // its best, on plain arrays.
+#include "../octree/src/words/words.h"
+
 #include <array>
 #include <bitset>
 #include <cmath>
@@ -41,7 +43,7 @@ struct Octant {
 
 Octant octant_at(const std::vector<uint32_t>& words, int depth, Argument position) {
     Octant found{words[0], 1 << depth, {0, 0, 0}, {0, 0, 0}};
-    for (int level = depth - 1; found.word >> 31 == 0; --level) {
+    for (int level = depth - 1; !voxrt::octree::is_leaf(found.word); --level) {
         found.side /= 2;
         uint32_t index = 0;
         for (int axis = 0; axis < 3; ++axis) {
@@ -141,7 +143,7 @@ int main(int count, char** arguments) {
             };
             while (in_world()) {
                 const Octant octant = octant_at(words, depth, ray);
-                const int material = octant.word & 0xFF;
+                const int material = voxrt::octree::material(octant.word);
                 if (material == 0) {
                     ray = step_out(ray, direction, octant);
                     continue;

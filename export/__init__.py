@@ -27,7 +27,6 @@ __all__ = [
     "read_mif",
     "read_raw",
     "read_rom",
-    "read_svdag",
     "read_vox",
     "rom_info",
     "write_blob",
@@ -38,7 +37,6 @@ __all__ = [
     "write_npz",
     "write_raw",
     "write_rom",
-    "write_svdag",
     "write_vox",
 ]
 
@@ -57,7 +55,6 @@ _HOMES = {
     "voxrt.export.provenance": ("BakedLight", "Provenance", "Source"),
     "voxrt.export.raw": ("read_raw", "write_raw"),
     "voxrt.export.rom_files": ("RomFiles", "read_rom", "write_rom"),
-    "voxrt.export.svdag": ("read_svdag", "write_svdag"),
     "voxrt.export.vox": ("read_vox", "write_vox"),
     "voxrt.export.word_file": ("WordFile",),
     "voxrt.export.word_formats": ("WORD_SUFFIXES",),
@@ -78,7 +75,6 @@ if TYPE_CHECKING:  # type checkers see these names and no others
     from voxrt.export.provenance import BakedLight, Provenance, Source
     from voxrt.export.raw import read_raw, write_raw
     from voxrt.export.rom_files import RomFiles, read_rom, write_rom
-    from voxrt.export.svdag import read_svdag, write_svdag
     from voxrt.export.vox import read_vox, write_vox
     from voxrt.export.word_file import WordFile
     from voxrt.export.word_formats import WORD_SUFFIXES

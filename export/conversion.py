@@ -13,7 +13,6 @@ from voxrt.export.listing import read_listing
 from voxrt.export.manifest import read_manifest
 from voxrt.export.provenance import Provenance
 from voxrt.export.rom_files import other_words, read_words, words_crc32, write_rom
-from voxrt.export.svdag import SVDAG_SUFFIX, read_svdag
 from voxrt.export.vox import read_vox
 from voxrt.export.word_formats import WORD_SUFFIXES
 from voxrt.octree import RomError
@@ -27,7 +26,7 @@ BLOB_SUFFIX = ".blob"
 LISTING_SUFFIX = ".txt"
 VOX_SUFFIX = ".vox"
 
-READABLE_SUFFIXES = (*WORD_SUFFIXES, BLOB_SUFFIX, LISTING_SUFFIX, SVDAG_SUFFIX, VOX_SUFFIX)
+READABLE_SUFFIXES = (*WORD_SUFFIXES, BLOB_SUFFIX, LISTING_SUFFIX, VOX_SUFFIX)
 """The files that :func:`read_any` reads."""
 
 WRITABLE_SUFFIXES = (*WORD_SUFFIXES, BLOB_SUFFIX)
@@ -41,7 +40,7 @@ def read_any(
     dialect: str | None = None,
     colours: Mapping[str, tuple[int, int, int]] | None = None,
 ) -> tuple[Blob, tuple[SceneWarning, ...]]:
-    """Read a memory: a file of words (its manifest beside it or not), a blob, a graph, a listing, a MagicaVoxel scene.
+    """Read a memory: a file of words (its manifest beside it or not), a blob, a listing, a MagicaVoxel scene.
 
     Parameters
     ----------
@@ -82,9 +81,6 @@ def read_any(
         return Blob(read_listing(path, colours or {}, depth)), ()
     if suffix == VOX_SUFFIX:
         rom, warnings = read_vox(path)
-        return Blob(rom), warnings
-    if suffix == SVDAG_SUFFIX:
-        rom, warnings = read_svdag(path)
         return Blob(rom), warnings
     if suffix in WORD_SUFFIXES:
         return read_words(path, depth, dialect)

@@ -15,13 +15,11 @@ __all__ = [
     "AnimationFrame",
     "Assembly",
     "Census",
-    "DagCensus",
     "Dialect",
     "Difference",
     "DiskAssembly",
     "Fit",
     "Leaves",
-    "OccupancyDag",
     "Octant",
     "Octree",
     "Owners",
@@ -35,7 +33,6 @@ __all__ = [
     "check_roots",
     "coarsen",
     "count_in_box",
-    "dag_census",
     "decode",
     "detect_dialect",
     "diff",
@@ -52,8 +49,6 @@ __all__ = [
     "join_frames",
     "leaves",
     "material_at",
-    "mirrored_blocks",
-    "occupancy_dag",
     "octant_at",
     "share",
     "share_hidden",
@@ -87,7 +82,6 @@ _HOMES = {
     "voxrt.octree.hidden": ("fill_hidden", "hidden_voxels", "share_hidden"),
     "voxrt.octree.leaf_arrays": ("Leaves", "leaves"),
     "voxrt.octree.lod": ("with_means",),
-    "voxrt.octree.dag": ("DagCensus", "OccupancyDag", "dag_census", "mirrored_blocks", "occupancy_dag"),
     "voxrt.octree.octant": ("Octant", "octant_at"),
     "voxrt.octree.octree": ("MAX_DEPTH", "Octree"),
     "voxrt.octree.owners": ("Owners",),
@@ -113,7 +107,6 @@ if TYPE_CHECKING:  # type checkers see these names and no others
     from voxrt.octree.assembly import Assembly
     from voxrt.octree.budget import BOARDS, Fit, coarsen, fit, share, shared_words
     from voxrt.octree.construct import build, from_dense, from_points
-    from voxrt.octree.dag import DagCensus, OccupancyDag, dag_census, mirrored_blocks, occupancy_dag
     from voxrt.octree.decoding import decode
     from voxrt.octree.dialects import DIALECTS, Dialect, detect_dialect, encode
     from voxrt.octree.difference import Difference, Region, diff, differing_regions

@@ -197,7 +197,7 @@ def fit(
 
 
 def _candidates(shared: Octree, words: int, colours: NDArray[np.uint8]) -> list[Octree]:
-    """Return memories of at most `words` words: src/fit_candidates.h. The first is the plain coarser world."""
+    """Return memories of at most `words` words: src/budget/fit_candidates.h. The first is the plain coarser world."""
     found, problem = _native.fit_candidates(shared.words, shared.depth, words, colours)
     if problem:
         raise DoesNotFitError(problem)

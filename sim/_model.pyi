@@ -1,4 +1,4 @@
-# The exact model, native; src/model/module.cpp documents it.
+# The exact model, native; src/model/bindings/module.cpp documents it.
 from collections.abc import Sequence
 from typing import NamedTuple
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import sys
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
@@ -24,6 +25,17 @@ MAY_IMPORT = {
 
 INSIDE_VOXRT = ("options", "sources", "views", "plans", "building", "boards", "cli")
 """The folders of ``voxrt/``, each of which imports itself and those before it."""
+
+INSIDE_SOURCES = {
+    "voxelize/src": ("work", "grid", "scene", "coverage", "holes", "mesh", "tiles", "colour", "bindings"),
+    "octree/src": ("words", "pool", "build", "files", "query", "sight", "budget", "bindings"),
+    "sim/src/model": ("rays", "frames", "views", "bindings"),
+    "sim/src/bake": ("surface", "rays", "light", "bindings"),
+}
+"""The folders of C++ sources. A file includes its own folder, the folders before it, and the sources before these."""
+
+INCLUDED_AS = {"voxelize": "voxelize/src", "octree": "octree/src", "sim": "sim/src/model", "bake": "sim/src/bake"}
+"""What stands between ``<voxrt/`` and the folder in the name of a header."""
 
 OUTSIDE = ("bench", "examples", "docs", "rtl", "tests")
 """Folders whose scripts import the rooms and each other. No room imports them; ``voxrt.rtl`` is for the front door."""
@@ -129,6 +141,41 @@ def test_the_folders_of_voxrt_import_in_one_direction(graph):
         if place(target) > place(name)
     ]
     assert not wrong, "\n".join(wrong)
+
+
+def native_sources() -> list[Path]:
+    return [path for root in INSIDE_SOURCES for path in sorted((ROOT / root).rglob("*.[ch]*")) if path.suffix != ".txt"]
+
+
+def includes_of(path: Path) -> set[Path]:
+    """The files of ours that a C++ file includes."""
+    found = set()
+    for beside, room, rest in re.findall(
+        r'^ *# *include (?:"(.+)"|<voxrt/(\w+)/(.+)>)$', path.read_text(encoding="utf-8"), re.MULTILINE
+    ):
+        found.add((path.parent / beside).resolve() if beside else ROOT / INCLUDED_AS[room] / rest)
+    return found
+
+
+def native_place(path: Path) -> tuple[int, int]:
+    """The number of the sources that a C++ file is of, and that of its folder in them."""
+    name = path.relative_to(ROOT).as_posix()
+    number, root = next((i, root) for i, root in enumerate(INSIDE_SOURCES) if name.startswith(f"{root}/"))
+    return number, INSIDE_SOURCES[root].index(path.parent.name)
+
+
+def test_the_folders_of_cpp_sources_include_in_one_direction():
+    files = native_sources()
+    assert len(files) > 200
+    graph = {path: includes_of(path) for path in files}
+    wrong = [
+        f"{path.relative_to(ROOT)} includes {target.relative_to(ROOT)}"
+        for path, targets in graph.items()
+        for target in targets
+        if target not in graph or native_place(target) > native_place(path)
+    ]
+    assert not wrong, "\n".join(wrong)
+    TopologicalSorter(graph).prepare()
 
 
 def test_no_circle_of_imports(graph):

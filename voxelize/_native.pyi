@@ -1,4 +1,4 @@
-# The manual of these functions is their docstrings, in src/module.cpp, src/scene_bindings.cpp, src/colour_bindings.cpp.
+# The manual of these functions is their docstrings, in src/bindings.
 from collections.abc import Sequence
 from typing import NamedTuple, TypeAlias
 

@@ -63,7 +63,7 @@ class Voxels:
 
 
 class ObjectMode(StrEnum):
-    """How the inside of an object was told from its outside. ``src/object_mode.h`` decides it.
+    """How the inside of an object was told from its outside. ``src/scene/object_mode.h`` decides it.
 
     Examples
     --------
@@ -130,7 +130,7 @@ class Voxelization:
         What was ignored or replaced.
     seconds
         Wall seconds per stage of the native voxelizer, in order: ``"analysis"``, ``"bin"``, ``"coverage"``, ``"fill"``,
-        ``"holes"``, ``"order"``, ``"gather"``; ``src/voxelizer.h`` describes the stages.
+        ``"holes"``, ``"order"``, ``"gather"``; ``src/tiles/voxelizer.h`` describes the stages.
     """
 
     voxels: Voxels

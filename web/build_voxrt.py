@@ -34,9 +34,14 @@ def build(jobs: int | None = None) -> Path:
 def our_units() -> list[Unit]:
     """Return the native sources, and those of the C interface."""
     flags = (*zig("c++"), *COMPILED, "-I", str(BUILD / "include"))
-    folders = [ROOT / folder for folder in (*ROOMS.values(), "voxelize/src/colour", "web/src")]
-    sources = [path for folder in folders for path in sorted(folder.glob("*.cpp")) if path.name not in LEFT_OUT]
-    return [Unit(source, flags) for source in sources if not source.name.endswith(LEFT_OUT_ENDS)]
+    folders = [ROOT / folder for folder in ROOMS.values()]
+    sources = [path for folder in folders for path in sorted(folder.rglob("*.cpp"))]
+    sources += sorted((ROOT / "web" / "src").glob("*.cpp"))
+    return [
+        Unit(source, flags)
+        for source in sources
+        if source.name not in LEFT_OUT and not source.name.endswith(LEFT_OUT_ENDS)
+    ]
 
 
 def link_headers() -> None:

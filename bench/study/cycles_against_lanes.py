@@ -33,7 +33,6 @@ for scene in scenes(Path(), size):
     print(f"{scene.name:24s}" + "".join(f"{value:8.2f}" for value in cycles))
     (line,) = plt.loglog(lanes, cycles, "o-", label=f"{scene.name}: {words:.1f} words per ray")
     plt.loglog(lanes, np.maximum(1, words / lanes), ":", color=line.get_color())
-plt.loglog((1, 2), (338, 169.6), "ks-", label="the original on its house, simulated")
 plt.xticks(lanes, map(str, lanes))
 plt.xlabel("lanes")
 plt.ylabel("cycles per pixel; dotted: the bound")

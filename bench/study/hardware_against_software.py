@@ -52,7 +52,3 @@ for column, (name, picture) in enumerate(pictures.items()):
         places[row, column].axis("off")
 plt.tight_layout()
 plt.show()
-
-# %%
-# The original hardware was simulated from its published sources. On its own scenes, 0.5 to 6.5 % of its pixels are
-# wrong.

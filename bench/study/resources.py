@@ -40,8 +40,7 @@ plt.tight_layout()
 plt.show()
 
 # %%
-# Area against speed on the published house, where a ray reads 12 words. Ours: the bound. The original: as simulated.
+# Area against speed on the published house, where a ray reads 12 words: the bound of the cycles.
 for name, row in area.items():
     pixels = 1e3 / max(1, 12 / int(row["lanes"]))
     print(f"{name:8s}{float(row['LUT'].replace(',', '')) / pixels:8.1f} LUT per pixel in a thousand cycles")
-print(f"{'original':8s}{theirs['LUT'] / (1e3 / 338):8.1f}")

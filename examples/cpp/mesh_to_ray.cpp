@@ -3,10 +3,10 @@
 // Build and run:
 //     cmake -S examples/cpp -B build/cpp -DCMAKE_BUILD_TYPE=Release
 //     cmake --build build/cpp && build/cpp/mesh_to_ray
-#include <voxrt/octree/build.h>
-#include <voxrt/octree/verify.h>
-#include <voxrt/sim/ray.h>
-#include <voxrt/voxelize/voxelizer.h>
+#include <voxrt/octree/build/build.h>
+#include <voxrt/octree/words/verify.h>
+#include <voxrt/sim/rays/ray.h>
+#include <voxrt/voxelize/tiles/voxelizer.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -26,7 +26,7 @@ int main() {
     // Its place in the grid: 50 voxels per metre, moved by 4 voxels. The map's unit is 1/4096 voxel.
     constexpr double scale = 50 * double(voxelize::kUnit), shift = 4 * double(voxelize::kUnit);
     const double frame[12] = {scale, 0, 0, shift, 0, scale, 0, shift, 0, 0, scale, shift};
-    const std::vector<voxelize::PartView> parts = {{voxelize::PartKind::mesh, &mesh, frame, 0, 0}};
+    const std::vector<voxelize::PartView> parts = {{.kind = voxelize::PartKind::mesh, .mesh = &mesh, .frame = frame}};
 
     const voxelize::SparseVoxels voxels = voxelize::voxelize(depth, parts, 1, voxelize::Fill::solid, 0);
     std::printf("%lld voxels, inside told by mode '%s'\n", static_cast<long long>(voxels.object_voxels[0]),

@@ -3,14 +3,14 @@
 // Build and run:
 //     cmake -S examples/cpp -B build/cpp -DCMAKE_BUILD_TYPE=Release
 //     cmake --build build/cpp && build/cpp/query_octree
-#include <voxrt/octree/dense.h>
-#include <voxrt/octree/diff.h>
-#include <voxrt/octree/hidden.h>
-#include <voxrt/octree/interior.h>
-#include <voxrt/octree/query.h>
-#include <voxrt/octree/validate.h>
-#include <voxrt/octree/verify.h>
-#include <voxrt/sim/ray.h>
+#include <voxrt/octree/build/dense.h>
+#include <voxrt/octree/query/diff.h>
+#include <voxrt/octree/query/query.h>
+#include <voxrt/octree/sight/hidden.h>
+#include <voxrt/octree/sight/interior.h>
+#include <voxrt/octree/words/validate.h>
+#include <voxrt/octree/words/verify.h>
+#include <voxrt/sim/rays/ray.h>
 
 #include <cstdio>
 #include <cstdlib>

@@ -35,7 +35,7 @@ def test_around_all_formats(voxrt, built):
     assert voxrt("render", "out/turned.blob", "-o", "a.png", "--engine", "model", "--size", "16x12").code == 0
 
 
-@pytest.mark.parametrize("suffix", [".svdag", ".vox", ".npz", ".ply", ".glb", ".vtu", ".html"])
+@pytest.mark.parametrize("suffix", [".vox", ".npz", ".ply", ".glb", ".vtu", ".html"])
 def test_files_for_other_programs(voxrt, built, suffix):
     if suffix == ".vtu":
         pytest.importorskip("pyvista", reason="the extra voxrt-build[view] is not installed")
@@ -48,21 +48,9 @@ def test_files_for_other_programs(voxrt, built, suffix):
     assert (built / f"again{suffix}").read_bytes() == first
 
 
-def test_a_sparse_voxel_dag_has_the_voxels_of_its_memory(voxrt, built):
-    assert voxrt("convert", "house.mem", "house.svdag").code == 0
-    differing = json.loads(voxrt("diff", "house.mem", "house.svdag", "--json").out)
-    assert (differing["appeared"], differing["vanished"]) == (0, 0)
-    assert voxrt("info", "house.svdag").code == 0
-    (built / "house.svdag").write_bytes((built / "house.svdag").read_bytes()[:-1])
-    cut = voxrt("info", "house.svdag")
-    assert cut.code == 3
-    assert cut.err.startswith("voxrt: error: house.svdag: the header says")
-    assert cut.err.count("\n") == 1
-
-
 def test_every_form_has_a_writer():
     assert library.WRITABLE_SUFFIXES == (
-        ".mem", ".coe", ".mif", ".bin", ".blob", ".svdag", ".vox", ".npz", ".ply", ".glb", ".vtu", ".html"
+        ".mem", ".coe", ".mif", ".bin", ".blob", ".vox", ".npz", ".ply", ".glb", ".vtu", ".html"
     )  # fmt: skip
 
 

@@ -86,7 +86,7 @@ CYCLES = rows(ROOT / "rtl" / "README.md", "| scene | words per ray |")
 
 @pytest.mark.parametrize("row", CYCLES, ids=[row[0] for row in CYCLES])
 def test_cycles_of_the_hardware_page(row):
-    scene, words, *cycles, _ = row
+    scene, words, *cycles = row
     scene = scene.split(",")[0]
     for config, shown in zip(("tiny", "duo", "quad", "octo", "z1", "banked"), cycles, strict=True):
         measured = cycles_of(scene, config)

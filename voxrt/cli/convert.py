@@ -43,13 +43,11 @@ def convert(
     Parameters
     ----------
     source
-        A memory: .mem, .coe, .mif or .bin (with or without a manifest beside it), .blob, .svdag (a sparse voxel
-        DAG), .vox (MagicaVoxel), or .txt (a node listing of the original's authoring script). Or an asset, which is
-        built first.
+        A memory: .mem, .coe, .mif or .bin (with or without a manifest beside it), .blob, .vox (MagicaVoxel),
+        or .txt (a node listing of the original's authoring script). Or an asset, which is built first.
     target
         The file to write. Whole memories: .mem, .coe, .mif or .bin, each with a manifest beside it, or .blob. For
-        other programs: .svdag (which voxels are solid, as a sparse voxel DAG), .vox (MagicaVoxel), .npz (NumPy), .ply,
-        .glb (glTF), .vtu (ParaView, PyVista) or .html.
+        other programs: .vox (MagicaVoxel), .npz (NumPy), .ply, .glb (glTF), .vtu (ParaView, PyVista) or .html.
     depth
         Levels of the octree, for an asset or if FROM does not state them.
     from_dialect

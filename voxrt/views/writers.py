@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 from voxrt import export
-from voxrt.export import Blob, write_npz, write_svdag, write_vox
+from voxrt.export import Blob, write_npz, write_vox
 from voxrt.octree import Rom, RomError
 from voxrt.outputs import check_folder, writing
 from voxrt.view import Pane
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     WritePane: TypeAlias = Callable[[Path, Pane], None]
-    WriteRom: TypeAlias = Callable[[Path, Rom], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,15 +31,12 @@ class Writer:
     form
         What the file is, for people.
     write_pane
-        Writes the octants that a pane shows: all of a memory, or those that a cut leaves. None for files that hold all
-        of a memory.
-    write_rom
-        Writes all voxels of a memory. With neither, the file holds the memory with its words.
+        Writes the octants that a pane shows: all of a memory, or those that a cut leaves. None for files that hold a
+        memory with its words.
     """
 
     form: str
     write_pane: WritePane | None = None
-    write_rom: WriteRom | None = None
 
 
 WRITERS: dict[str, Writer] = {
@@ -49,7 +45,6 @@ WRITERS: dict[str, Writer] = {
     ".mif": Writer("words for Intel (Altera) tools, with a manifest"),
     ".bin": Writer("words of 32 bits, least significant byte first, with a manifest"),
     ".blob": Writer("a whole scene in one file, for boards"),
-    ".svdag": Writer("which voxels are solid, as a sparse voxel DAG", write_rom=write_svdag),
     ".vox": Writer("a MagicaVoxel scene", lambda path, pane: write_vox(path, pane.rom, pane.high)),
     ".npz": Writer("NumPy arrays of the solid voxels", lambda path, pane: write_npz(path, pane.rom, pane.high)),
     ".ply": Writer("a PLY mesh of the visible sides", lambda path, pane: write_ply(path, pane.rom, pane.mesh())),
@@ -69,17 +64,15 @@ PANE_WRITERS: dict[str, WritePane] = {
 }
 """The writers of files that can hold a part of a memory."""
 
-WORD_WRITERS = frozenset(
-    suffix for suffix, writer in WRITERS.items() if writer.write_pane is None and writer.write_rom is None
-)
+WORD_WRITERS = frozenset(WRITERS) - set(PANE_WRITERS)
 """The suffixes of files that hold a memory with its words, and all frames of an animation."""
 
 
 def convert(memory: Blob | Rom, target: str | os.PathLike[str], *, dialect: str = "report") -> tuple[Path, ...]:
     """Write a memory in the form that the name of a file asks for.
 
-    ``.mem``, ``.coe``, ``.mif``, ``.bin`` and ``.blob`` hold all of the memory. ``.svdag``, ``.vox``, ``.npz``,
-    ``.ply``, ``.glb``, ``.vtu`` and ``.html`` hold its voxels or octants, for other programs.
+    ``.mem``, ``.coe``, ``.mif``, ``.bin`` and ``.blob`` hold all of the memory. ``.vox``, ``.npz``, ``.ply``,
+    ``.glb``, ``.vtu`` and ``.html`` hold its voxels or octants, for other programs.
 
     Parameters
     ----------
@@ -127,9 +120,5 @@ def convert(memory: Blob | Rom, target: str | os.PathLike[str], *, dialect: str 
     with writing(path):
         if suffix in WORD_WRITERS:
             return export.convert(blob, path, dialect=dialect)
-        writer = WRITERS[suffix]
-        if writer.write_rom is not None:
-            writer.write_rom(path, blob.rom)
-        elif writer.write_pane is not None:
-            writer.write_pane(path, Pane(blob.rom))
+        PANE_WRITERS[suffix](path, Pane(blob.rom))
     return (path,)

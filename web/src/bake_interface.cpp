@@ -3,9 +3,9 @@
 #include "interface_error.h"
 #include "scene.h"
 
-#include <voxrt/bake/baked_light.h>
-#include <voxrt/bake/placed_triangles.h>
-#include <voxrt/octree/verify.h>
+#include <voxrt/bake/light/baked_light.h>
+#include <voxrt/bake/surface/placed_triangles.h>
+#include <voxrt/octree/words/verify.h>
 
 #include <algorithm>
 #include <string>

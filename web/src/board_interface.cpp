@@ -3,9 +3,9 @@
 #include "interface_error.h"
 #include "memory.h"
 
-#include <voxrt/octree/encoded_rows.h>
-#include <voxrt/sim/beam.h>
-#include <voxrt/sim/orbit.h>
+#include <voxrt/octree/words/encoded_rows.h>
+#include <voxrt/sim/views/beam.h>
+#include <voxrt/sim/views/orbit.h>
 
 #include <array>
 #include <optional>

@@ -3,17 +3,17 @@
 #include "interface_error.h"
 #include "scene.h"
 
-#include <voxrt/octree/breadth_first.h>
-#include <voxrt/octree/coarsen.h>
-#include <voxrt/octree/diff.h>
-#include <voxrt/octree/fit_candidates.h>
-#include <voxrt/octree/sight_costs.h>
-#include <voxrt/octree/surface.h>
-#include <voxrt/octree/verify.h>
-#include <voxrt/sim/fit_views.h>
-#include <voxrt/sim/frame_tile.h>
-#include <voxrt/sim/framing.h>
-#include <voxrt/sim/similarity.h>
+#include <voxrt/octree/budget/fit_candidates.h>
+#include <voxrt/octree/budget/sight_costs.h>
+#include <voxrt/octree/build/coarsen.h>
+#include <voxrt/octree/pool/breadth_first.h>
+#include <voxrt/octree/query/diff.h>
+#include <voxrt/octree/sight/surface.h>
+#include <voxrt/octree/words/verify.h>
+#include <voxrt/sim/frames/frame_tile.h>
+#include <voxrt/sim/views/fit_views.h>
+#include <voxrt/sim/views/framing.h>
+#include <voxrt/sim/views/similarity.h>
 
 #include <algorithm>
 #include <array>
@@ -26,7 +26,8 @@ using namespace voxrt;
 using namespace voxrt::web;
 using octree::Words;
 
-// Colours that are tried where baked light does not fit with all of them, and the default picture: voxrt/building/baking.py.
+// Colours that are tried where baked light does not fit with all of them, and the default picture:
+// voxrt/building/baking.py.
 constexpr int kPalettes[] = {sim::kMostBakedColours, 64, 16};
 constexpr int kWidth = 640, kHeight = 480;
 

@@ -11,15 +11,15 @@
 #include "interface_error.h"
 #include "memory.h"
 
-#include <voxrt/octree/breadth_first.h>
-#include <voxrt/octree/coarsen.h>
-#include <voxrt/octree/leaves.h>
-#include <voxrt/octree/query.h>
-#include <voxrt/octree/validate.h>
-#include <voxrt/octree/verify.h>
-#include <voxrt/sim/frame.h>
-#include <voxrt/sim/frame_tile.h>
-#include <voxrt/sim/ray.h>
+#include <voxrt/octree/build/coarsen.h>
+#include <voxrt/octree/pool/breadth_first.h>
+#include <voxrt/octree/query/leaves.h>
+#include <voxrt/octree/query/query.h>
+#include <voxrt/octree/words/validate.h>
+#include <voxrt/octree/words/verify.h>
+#include <voxrt/sim/frames/frame.h>
+#include <voxrt/sim/frames/frame_tile.h>
+#include <voxrt/sim/rays/ray.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -130,8 +130,8 @@ EXPORT(vx_outline_leaves) const int32_t* vx_outline_leaves() { return outline.da
 
 // Pictures.
 
-/// How hits are coloured (sim/src/model/pixel.h). `materials`: 256 sRGB triples. `mirrors`: 256 flags. `faces`: 6, or
-/// null. `light`: x, y, z in 1/16 voxel, or null.
+/// How hits are coloured (sim/src/model/rays/pixel.h). `materials`: 256 sRGB triples. `mirrors`: 256 flags. `faces`: 6,
+/// or null. `light`: x, y, z in 1/16 voxel, or null.
 EXPORT(vx_shading)
 void vx_shading(const uint8_t* materials, const uint8_t* mirrors, int bounces, int flat, const uint8_t* faces,
                 const int32_t* light, int ambient) {

@@ -1,7 +1,7 @@
 // Errors of the C interface: what a call threw, as one line.
 #pragma once
 
-#include <voxrt/voxelize/grid_fit.h>
+#include <voxrt/voxelize/scene/grid_fit.h>
 
 #include <exception>
 #include <new>

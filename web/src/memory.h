@@ -1,7 +1,7 @@
 // The memory of the C interface, which pictures are made of.
 #pragma once
 
-#include <voxrt/octree/verify.h>
+#include <voxrt/octree/words/verify.h>
 
 namespace voxrt::web {
 

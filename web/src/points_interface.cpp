@@ -2,8 +2,8 @@
 #include "export.h"
 #include "interface_error.h"
 
-#include <voxrt/octree/build.h>
-#include <voxrt/voxelize/morton.h>
+#include <voxrt/octree/build/build.h>
+#include <voxrt/voxelize/grid/morton.h>
 
 #include <algorithm>
 #include <string>

@@ -1,12 +1,12 @@
 // The scene of the C interface, from which memories are built, and what was built last.
 #pragma once
 
-#include <voxrt/bake/baked_light.h>
-#include <voxrt/octree/words.h>
+#include <voxrt/bake/light/baked_light.h>
+#include <voxrt/octree/words/memory.h>
 #include <voxrt/voxelize/colour/assign_colours.h>
-#include <voxrt/voxelize/grid_fit.h>
-#include <voxrt/voxelize/material_table.h>
-#include <voxrt/voxelize/object_warnings.h>
+#include <voxrt/voxelize/scene/grid_fit.h>
+#include <voxrt/voxelize/scene/material_table.h>
+#include <voxrt/voxelize/scene/object_warnings.h>
 
 #include <algorithm>
 #include <array>
@@ -29,16 +29,16 @@ struct Mesh {
     std::vector<double> positions;
     std::vector<int32_t> triangles;
     std::vector<uint8_t> materials;
-    // Of triangles with an appearance; empty where none has.
+    // The appearances of triangles; all are empty where no triangle has one.
     std::vector<voxelize::Appearance> entries;
     std::vector<int32_t> rows;
     std::vector<double> uv;
     std::vector<float> colours;
-    // The author's normals; empty where there are none. `normal_rows`: of each corner, or -1.
+    // The author's normals; empty where there are none. `normal_rows`: the row of each corner, or -1.
     std::vector<double> normals;
     std::vector<int32_t> normal_rows;
 
-    std::vector<uint8_t> used{}; // vertices
+    std::vector<uint8_t> used{}; // by vertex: whether a triangle uses it
 
     bool varies() const {
         return std::any_of(rows.begin(), rows.end(), [](int32_t row) { return row >= 0; });

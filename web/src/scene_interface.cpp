@@ -6,15 +6,15 @@
 #include "interface_error.h"
 #include "scene.h"
 
-#include <voxrt/octree/build.h>
+#include <voxrt/octree/build/build.h>
 #include <voxrt/voxelize/colour/assign_colours.h>
 #include <voxrt/voxelize/colour/assign_materials.h>
 #include <voxrt/voxelize/colour/srgb.h>
-#include <voxrt/voxelize/grid_fit.h>
-#include <voxrt/voxelize/material_table.h>
-#include <voxrt/voxelize/object_warnings.h>
-#include <voxrt/voxelize/used_vertices.h>
-#include <voxrt/voxelize/voxelizer.h>
+#include <voxrt/voxelize/scene/grid_fit.h>
+#include <voxrt/voxelize/scene/material_table.h>
+#include <voxrt/voxelize/scene/object_warnings.h>
+#include <voxrt/voxelize/scene/used_vertices.h>
+#include <voxrt/voxelize/tiles/voxelizer.h>
 
 #include <algorithm>
 #include <cstdlib>

@@ -1,6 +1,6 @@
 #include "baked_light.h"
 
-#include <voxrt/octree/build.h>
+#include <voxrt/octree/build/build.h>
 #include <voxrt/voxelize/colour/srgb.h>
 
 #include <algorithm>

@@ -11,9 +11,9 @@
 #include "exposed_bricks.h"
 #include "surface_points.h"
 
-#include <voxrt/octree/words.h>
+#include <voxrt/octree/words/words.h>
 #include <voxrt/voxelize/colour/palette.h>
-#include <voxrt/voxelize/material_table.h>
+#include <voxrt/voxelize/scene/material_table.h>
 
 #include <cstdint>
 #include <span>

@@ -1,7 +1,7 @@
 #include "brick_triangles.h"
 
-#include <voxrt/voxelize/interrupt.h>
-#include <voxrt/voxelize/morton.h>
+#include <voxrt/voxelize/grid/morton.h>
+#include <voxrt/voxelize/work/interrupt.h>
 
 #include <algorithm>
 #include <cmath>

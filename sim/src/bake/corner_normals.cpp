@@ -1,6 +1,6 @@
 #include "corner_normals.h"
 
-#include <voxrt/voxelize/interrupt.h>
+#include <voxrt/voxelize/work/interrupt.h>
 
 #include <algorithm>
 #include <array>

@@ -1,10 +1,10 @@
 #include "exposed_bricks.h"
 
-#include <voxrt/octree/hidden.h>
-#include <voxrt/octree/query.h>
-#include <voxrt/voxelize/interrupt.h>
-#include <voxrt/voxelize/morton.h>
-#include <voxrt/voxelize/workers.h>
+#include <voxrt/octree/query/query.h>
+#include <voxrt/octree/sight/hidden.h>
+#include <voxrt/voxelize/grid/morton.h>
+#include <voxrt/voxelize/work/interrupt.h>
+#include <voxrt/voxelize/work/workers.h>
 
 #include <array>
 #include <stdexcept>

@@ -1,7 +1,7 @@
 // The voxels of a memory that can be seen, brick by brick, and all others as octants.
 #pragma once
 
-#include <voxrt/octree/verify.h>
+#include <voxrt/octree/words/verify.h>
 
 #include <cstddef>
 #include <cstdint>

@@ -7,8 +7,8 @@
 #include "received_light.h"
 #include "surface_points.h"
 
-#include <voxrt/octree/query.h>
-#include <voxrt/voxelize/python.h>
+#include <voxrt/octree/query/query.h>
+#include <voxrt/voxelize/bindings/python.h>
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>

@@ -1,7 +1,7 @@
 #include "occupancy.h"
 
-#include <voxrt/octree/query.h>
-#include <voxrt/voxelize/interrupt.h>
+#include <voxrt/octree/query/query.h>
+#include <voxrt/voxelize/work/interrupt.h>
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // The solid voxels of a memory as bits.
 #pragma once
 
-#include <voxrt/octree/verify.h>
+#include <voxrt/octree/words/verify.h>
 
 #include <cstddef>
 #include <cstdint>

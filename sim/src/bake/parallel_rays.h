@@ -1,7 +1,7 @@
 // Which of some parallel rays leave the world without a hit. parallel_rays_body.h is compiled once per instruction set.
 #pragma once
 
-#include <voxrt/octree/verify.h>
+#include <voxrt/octree/words/verify.h>
 
 #include <cstdint>
 

@@ -1,7 +1,7 @@
 #include "received_light.h"
 
-#include <voxrt/voxelize/interrupt.h>
-#include <voxrt/voxelize/workers.h>
+#include <voxrt/voxelize/work/interrupt.h>
+#include <voxrt/voxelize/work/workers.h>
 
 #include <algorithm>
 #include <cstdlib>

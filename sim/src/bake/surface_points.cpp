@@ -1,8 +1,8 @@
 #include "surface_points.h"
 
-#include <voxrt/octree/query.h>
-#include <voxrt/voxelize/interrupt.h>
-#include <voxrt/voxelize/workers.h>
+#include <voxrt/octree/query/query.h>
+#include <voxrt/voxelize/work/interrupt.h>
+#include <voxrt/voxelize/work/workers.h>
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // sweep.h's sweep for the instruction set of the including file, which defines VOXRT_SWEEP as its name.
 #include "sweep.h"
 
-#include <voxrt/voxelize/interrupt.h>
+#include <voxrt/voxelize/work/interrupt.h>
 
 #include <cstdlib>
 #include <cstring>

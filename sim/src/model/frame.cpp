@@ -3,7 +3,7 @@
 #include "frame_tile.h"
 #include "ray.h"
 
-#include <voxrt/voxelize/workers.h>
+#include <voxrt/voxelize/work/workers.h>
 
 #include <algorithm>
 #include <atomic>

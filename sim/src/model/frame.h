@@ -1,6 +1,6 @@
 // A frame of the exact model, and a list of rays, on several threads.
 //
-// Long calls count their work: the caller's interrupt check may end them (voxrt/voxelize/interrupt.h).
+// Long calls count their work: the caller's interrupt check may end them (voxrt/voxelize/work/interrupt.h).
 #pragma once
 
 #include "pixel.h"

@@ -1,8 +1,8 @@
 #include "framing.h"
 
-#include <voxrt/octree/breadth_first.h>
-#include <voxrt/octree/coarsen.h>
-#include <voxrt/octree/leaves.h>
+#include <voxrt/octree/build/coarsen.h>
+#include <voxrt/octree/pool/breadth_first.h>
+#include <voxrt/octree/query/leaves.h>
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include "similarity.h"
 #include "views_bindings.h"
 
-#include <voxrt/voxelize/python.h>
+#include <voxrt/voxelize/bindings/python.h>
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>

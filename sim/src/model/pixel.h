@@ -3,7 +3,7 @@
 
 #include "lod.h"
 
-#include <voxrt/octree/verify.h>
+#include <voxrt/octree/words/verify.h>
 
 #include <array>
 #include <cstdint>

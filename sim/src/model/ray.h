@@ -18,7 +18,7 @@
 
 #include "lod.h"
 
-#include <voxrt/octree/verify.h>
+#include <voxrt/octree/words/verify.h>
 
 #include <bit>
 #include <cstdint>

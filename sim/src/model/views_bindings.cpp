@@ -3,7 +3,7 @@
 #include "beam.h"
 #include "orbit.h"
 
-#include <voxrt/voxelize/python.h>
+#include <voxrt/voxelize/bindings/python.h>
 
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/vector.h>

@@ -17,13 +17,11 @@ public:
     virtual uint32_t read(uint32_t address) = 0;
     virtual void write(uint32_t address, uint32_t value) = 0;
 
-    // For a cached core alone: maps the words of its external memory from byte `address` on, a multiple of 4. They stay
-    // the caller's, who may change them at any time between calls. There is nothing elsewhere: such reads answer
-    // DECERR.
+    // Gives a cached core the words of its external memory from byte `address` on, a multiple of 4. They stay the
+    // caller's, who may change them at any time between calls. Reads elsewhere answer DECERR.
     virtual void map_external(uint32_t address, std::span<const uint32_t> words) = 0;
 
-    // For a core that is not cached. Word addresses, one word per clock; all are in the memory, which the caller
-    // checks.
+    // Accesses the memory of a core that is not cached, a word per clock. `address` counts words; the caller checks it.
     virtual void read_memory(std::size_t address, std::span<uint32_t> words) = 0;
     virtual void write_memory(std::size_t address, std::span<const uint32_t> words) = 0;
 

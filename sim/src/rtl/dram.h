@@ -21,7 +21,7 @@ struct DramTiming {
 class Dram {
 public:
     static constexpr unsigned ports = 2;
-    static constexpr uint32_t base = 0x1000'0000; // What the register memory_base holds.
+    static constexpr uint32_t base = 0x1000'0000; // the value of the register memory_base
 
     // What a port drives in a clock.
     struct Response {

@@ -5,6 +5,8 @@
 #include "design.h"
 #include "stall_pattern.h"
 
+#include <voxrt/octree/words/words.h>
+
 #include <verilated.h>
 #include <verilated_syms.h>
 
@@ -231,15 +233,18 @@ private:
         const unsigned pointer_bits = limits_.block_bits > 9 ? limits_.block_bits : 9;
         const uint32_t leaf = 1u << (pointer_bits + (limits_.lod ? 8 : 0));
         if (lod_words_) {
-            if (word >> 8 == 0xFFFFFF)
-                return leaf | (word & 0xFF);
-            return word >> (limits_.block_bits + 8) ? leaf | 0x100 : (word & 0xFF) << pointer_bits | word >> 8;
+            if (octree::is_tagged(word))
+                return leaf | octree::material(word);
+            const std::size_t block = octree::lod_block_number(word);
+            return block >> limits_.block_bits
+                       ? leaf | 0x100
+                       : uint32_t{octree::lod_mean(word)} << pointer_bits | static_cast<uint32_t>(block);
         }
-        if (word >> 31)
-            return leaf | (word & 0xFF);
-        if ((word & 7) != 1 || word >> (limits_.block_bits + 3))
-            return leaf | 0x100;
-        return word >> 3;
+        if (octree::is_leaf(word))
+            return leaf | octree::material(word);
+        const std::size_t block = octree::block_number(word);
+        return !octree::is_block_address(word) || block >> limits_.block_bits ? leaf | 0x100
+                                                                              : static_cast<uint32_t>(block);
     }
 
     // The memories of a voxrt_private_memory.

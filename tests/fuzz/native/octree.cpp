@@ -2,16 +2,16 @@
 // end; what is one is read without an error, and a grid made of it gives it again.
 #include "driver.h"
 
-#include "dense.h"
-#include "diff.h"
-#include "hidden.h"
-#include "interior.h"
-#include "query.h"
-#include "regions.h"
-#include "shared_size.h"
-#include "surface.h"
-#include "validate.h"
-#include "verify.h"
+#include <voxrt/octree/build/dense.h>
+#include <voxrt/octree/pool/shared_size.h>
+#include <voxrt/octree/query/diff.h>
+#include <voxrt/octree/query/query.h>
+#include <voxrt/octree/query/regions.h>
+#include <voxrt/octree/sight/hidden.h>
+#include <voxrt/octree/sight/interior.h>
+#include <voxrt/octree/sight/surface.h>
+#include <voxrt/octree/words/validate.h>
+#include <voxrt/octree/words/verify.h>
 
 using namespace voxrt::octree;
 

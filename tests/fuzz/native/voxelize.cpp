@@ -2,8 +2,8 @@
 // ellipsoids and hulls, placed by any matrix, on grids of up to 64 voxels per side.
 #include "driver.h"
 
-#include "convex_hull.h"
-#include "voxelizer.h"
+#include <voxrt/voxelize/scene/convex_hull.h>
+#include <voxrt/voxelize/tiles/voxelizer.h>
 
 #include <array>
 

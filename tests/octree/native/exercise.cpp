@@ -3,21 +3,21 @@
 // Random grids of every small depth go through each function and are held against the voxels themselves; random bricks
 // and octants are built on one thread and on three; memories of random words are refused and never read beyond their
 // end. Prints a line and exits with 1 where something is wrong.
-#include "breadth_first.h"
-#include "budget.h"
-#include "build.h"
-#include "coarsen.h"
-#include "dense.h"
-#include "diff.h"
-#include "hidden.h"
-#include "interior.h"
-#include "leaves.h"
-#include "query.h"
-#include "regions.h"
-#include "shared_size.h"
-#include "surface.h"
-#include "validate.h"
-#include "verify.h"
+#include <voxrt/octree/budget/budget.h>
+#include <voxrt/octree/build/build.h>
+#include <voxrt/octree/build/coarsen.h>
+#include <voxrt/octree/build/dense.h>
+#include <voxrt/octree/pool/breadth_first.h>
+#include <voxrt/octree/pool/shared_size.h>
+#include <voxrt/octree/query/diff.h>
+#include <voxrt/octree/query/leaves.h>
+#include <voxrt/octree/query/query.h>
+#include <voxrt/octree/query/regions.h>
+#include <voxrt/octree/sight/hidden.h>
+#include <voxrt/octree/sight/interior.h>
+#include <voxrt/octree/sight/surface.h>
+#include <voxrt/octree/words/validate.h>
+#include <voxrt/octree/words/verify.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -34,10 +34,10 @@ using Cells = std::vector<std::uint8_t>; // z fastest, then y, then x
 
 bool good = true;
 
-void expect(bool held, const char* what, unsigned depth) {
-    if (!held)
+void expect(bool condition, const char* what, unsigned depth) {
+    if (!condition)
         std::printf("depth %u: %s\n", depth, what);
-    good = good && held;
+    good = good && condition;
 }
 
 std::size_t at(std::int64_t x, std::int64_t y, std::int64_t z, unsigned depth) {

@@ -6,9 +6,9 @@
 // exits with 1 where anything is wrong.
 #include "world.h"
 
-#include <voxrt/bake/baked_light.h>
-#include <voxrt/bake/placed_triangles.h>
-#include <voxrt/octree/diff.h>
+#include <voxrt/bake/light/baked_light.h>
+#include <voxrt/bake/surface/placed_triangles.h>
+#include <voxrt/octree/query/diff.h>
 
 #include <cmath>
 #include <limits>

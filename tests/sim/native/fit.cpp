@@ -7,16 +7,16 @@
 // anything is wrong.
 #include "world.h"
 
-#include <voxrt/octree/breadth_first.h>
-#include <voxrt/octree/coarsen.h>
-#include <voxrt/octree/encoded_rows.h>
-#include <voxrt/octree/fit_candidates.h>
-#include <voxrt/octree/sight_costs.h>
-#include <voxrt/sim/beam.h>
-#include <voxrt/sim/fit_views.h>
-#include <voxrt/sim/framing.h>
-#include <voxrt/sim/orbit.h>
-#include <voxrt/sim/similarity.h>
+#include <voxrt/octree/budget/fit_candidates.h>
+#include <voxrt/octree/budget/sight_costs.h>
+#include <voxrt/octree/build/coarsen.h>
+#include <voxrt/octree/pool/breadth_first.h>
+#include <voxrt/octree/words/encoded_rows.h>
+#include <voxrt/sim/views/beam.h>
+#include <voxrt/sim/views/fit_views.h>
+#include <voxrt/sim/views/framing.h>
+#include <voxrt/sim/views/orbit.h>
+#include <voxrt/sim/views/similarity.h>
 
 #include <array>
 #include <cmath>

@@ -1,8 +1,8 @@
 // Random worlds for the exercises of this folder.
 #pragma once
 
-#include <voxrt/octree/dense.h>
-#include <voxrt/octree/verify.h>
+#include <voxrt/octree/build/dense.h>
+#include <voxrt/octree/words/verify.h>
 
 #include <algorithm>
 #include <cstdint>

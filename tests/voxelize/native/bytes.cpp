@@ -1,6 +1,6 @@
 // Bytes of columns against loops over voxels: IntervalBytes, slices_of, morton_columns. Prints nothing where all agree.
-#include <voxrt/voxelize/brick.h>
-#include <voxrt/voxelize/covered_row.h>
+#include <voxrt/voxelize/coverage/covered_row.h>
+#include <voxrt/voxelize/grid/brick.h>
 
 #include <cstdio>
 #include <random>

@@ -5,10 +5,10 @@
 // appearances. Each step of assigning colours runs on one thread and on three; the results must be equal, every
 // material an id of the table, and palettes no larger than asked for, with each colour's entry among them. Prints a
 // line and exits with 1 where anything is wrong.
-#include "colour/assign_colours.h"
-#include "colour/assign_materials.h"
-#include "colour/palette.h"
-#include "colour/raster_cells.h"
+#include <voxrt/voxelize/colour/assign_colours.h>
+#include <voxrt/voxelize/colour/assign_materials.h>
+#include <voxrt/voxelize/colour/palette.h>
+#include <voxrt/voxelize/colour/raster_cells.h>
 
 #include <algorithm>
 #include <cmath>

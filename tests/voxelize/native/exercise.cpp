@@ -4,8 +4,8 @@
 // instances, analytic solids and hulls, with and without materials that vary over triangles, on grids of every small
 // depth, filled or not. Every scene is voxelized on one thread and on three; the results must be equal. Then long work
 // is interrupted in the middle of its jobs. Prints a line and exits with 1 where anything is wrong.
-#include "convex_hull.h"
-#include "voxelizer.h"
+#include <voxrt/voxelize/scene/convex_hull.h>
+#include <voxrt/voxelize/tiles/voxelizer.h>
 
 #include <cstdio>
 #include <cstring>

@@ -1,6 +1,6 @@
 #include "appearance.h"
 
-#include "../workers.h"
+#include "../work/workers.h"
 
 #include <algorithm>
 

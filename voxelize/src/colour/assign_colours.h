@@ -4,7 +4,7 @@
 // (material_raster.h).
 #pragma once
 
-#include "../material_table.h"
+#include "../scene/material_table.h"
 #include "appearance.h"
 
 #include <array>
@@ -22,7 +22,7 @@ struct VariedMesh {
     Surface surface;
 };
 
-/// An object that shows one: rows of the 3x4 map from the mesh to the scene frame, metres.
+/// An object that shows such a mesh: rows of the 3x4 map from the mesh to the scene frame, metres.
 struct VariedObject {
     size_t mesh;
     std::array<double, 12> transform;

@@ -103,7 +103,7 @@ void add_light(Usage& usage, const FileMesh& mesh, const Appearance& appearance,
 
 std::vector<Usage> usages_of(std::vector<FileMesh>& meshes, int threads) {
     std::vector<Usage> usages;
-    std::map<std::pair<std::string, bool>, size_t> known;
+    std::map<std::pair<std::string, bool>, size_t> numbers;
     for (size_t at = 0; at < meshes.size(); ++at) {
         FileMesh& mesh = meshes[at];
         if (!mesh.surface)
@@ -124,7 +124,7 @@ std::vector<Usage> usages_of(std::vector<FileMesh>& meshes, int threads) {
             if (faces[row].empty())
                 continue;
             const Appearance& appearance = surface.entries[row];
-            const auto [place, fresh] = known.try_emplace({appearance.name, appearance.mirror}, usages.size());
+            const auto [place, fresh] = numbers.try_emplace({appearance.name, appearance.mirror}, usages.size());
             if (fresh)
                 usages.push_back({appearance.name, appearance.mirror, {}, {}, false, {}, 0});
             Usage& usage = usages[place->second];
@@ -163,9 +163,9 @@ std::vector<uint8_t> numbered(const std::vector<Usage>& usages, MaterialTable& t
         return ids;
     }
     const Palette palette = quantize(means, std::span<const double>(areas), static_cast<int>(free));
-    std::map<std::pair<uint8_t, bool>, uint8_t> known;
+    std::map<std::pair<uint8_t, bool>, uint8_t> id_of;
     for (size_t i = 0; i < usages.size(); ++i) {
-        const auto [place, fresh] = known.try_emplace({palette.rows[i], usages[i].mirror}, uint8_t{0});
+        const auto [place, fresh] = id_of.try_emplace({palette.rows[i], usages[i].mirror}, uint8_t{0});
         if (fresh)
             place->second = table.add({usages[i].name, palette.entries[palette.rows[i]], usages[i].mirror});
         ids.push_back(place->second);

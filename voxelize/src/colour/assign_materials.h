@@ -1,7 +1,7 @@
 // The last step of loading: a material for each appearance, in its mean colour; fully transparent triangles get none.
 #pragma once
 
-#include "../material_table.h"
+#include "../scene/material_table.h"
 #include "appearance.h"
 
 #include <cstdint>

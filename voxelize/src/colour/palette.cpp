@@ -1,6 +1,6 @@
 #include "palette.h"
 
-#include "../interrupt.h"
+#include "../work/interrupt.h"
 #include "srgb.h"
 
 #include <algorithm>
@@ -198,10 +198,10 @@ std::vector<Point> points_of(const std::vector<uint32_t>& codes, const std::vect
         const Srgb srgb = unpacked(codes[i]);
         uint32_t cell = static_cast<uint32_t>(i);
         if (!cell_of.empty()) {
-            uint32_t& known = cell_of[unsigned{srgb[0]} >> 3 << 10 | unsigned{srgb[1]} >> 3 << 5 | srgb[2] >> 3];
-            if (known == std::numeric_limits<uint32_t>::max())
-                known = static_cast<uint32_t>(cells.size());
-            cell = known;
+            uint32_t& number = cell_of[unsigned{srgb[0]} >> 3 << 10 | unsigned{srgb[1]} >> 3 << 5 | srgb[2] >> 3];
+            if (number == std::numeric_limits<uint32_t>::max())
+                number = static_cast<uint32_t>(cells.size());
+            cell = number;
         }
         if (cell == cells.size())
             cells.emplace_back();
@@ -237,7 +237,7 @@ Palette quantize(std::span<const Srgb> colours, const Numbers& weights, int coun
     std::array<double, 256> covered{};
     for (size_t i = 0; i < codes.size(); ++i)
         covered[groups[point_of[i]]] += cover[i];
-    std::array<std::array<double, 4>, 256> light{}; // and the sum of shares
+    std::array<std::array<double, 4>, 256> light{}; // sums of light times share, then the sum of shares
     for (size_t i = 0; i < codes.size(); ++i) {
         const uint8_t group = groups[point_of[i]];
         const double share = covered[group] > 0 ? cover[i] : 1; // a group of no area has a mean too

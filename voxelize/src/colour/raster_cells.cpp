@@ -1,6 +1,6 @@
 #include "raster_cells.h"
 
-#include "../workers.h"
+#include "../work/workers.h"
 #include "srgb.h"
 
 #include <algorithm>
@@ -82,11 +82,11 @@ RasterCells colour_rasters(const Surface& surface, std::span<const TriangleLayou
     std::map<std::pair<int32_t, int64_t>, int> numbers;
     std::vector<int> texture_of(layouts.size(), -1);
     std::vector<size_t> jobs{0}; // runs of triangles
-    int64_t begun = 0;
+    int64_t job_start = 0;
     for (size_t t = 0; t < layouts.size(); ++t) {
-        if (cells.starts[t] - begun >= kCellsOfAJob) {
+        if (cells.starts[t] - job_start >= kCellsOfAJob) {
             jobs.push_back(t);
-            begun = cells.starts[t];
+            job_start = cells.starts[t];
         }
         if (layouts[t].cells() == 0)
             continue;

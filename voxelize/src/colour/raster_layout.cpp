@@ -1,6 +1,6 @@
 #include "raster_layout.h"
 
-#include "../interrupt.h"
+#include "../work/interrupt.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,8 +32,8 @@ TriangleLayout lay_out(const std::array<Point, 3>& corners) {
         if (squares[k] > squares[longest])
             longest = k;
     }
-    // Of the sides on which the height stands, the longest always among them, the shortest: where there is a right
-    // angle, rows and columns run along it, as those of voxels often do.
+    // Columns run along the shortest side on which the height stands; the longest side is always one of these. So rows
+    // and columns run along a right angle, as those of voxels often do.
     int base = longest;
     for (int k = 2; k >= 0; --k)
         if ((k == longest || (feet[k] > -kRight && feet[k] < 1 + kRight)) && squares[k] <= squares[base])

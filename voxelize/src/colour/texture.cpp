@@ -1,6 +1,6 @@
 #include "texture.h"
 
-#include "../workers.h"
+#include "../work/workers.h"
 #include "srgb.h"
 
 #include <algorithm>

@@ -1,0 +1,2 @@
+#define VOXRT_SWEEP sweep_portable
+#include "sweep_body.h"

@@ -1,0 +1,152 @@
+#include "scene_bindings.h"
+
+#include "../scene/grid_fit.h"
+#include "../scene/material_table.h"
+#include "../scene/object_warnings.h"
+#include "../scene/used_vertices.h"
+#include "python.h"
+
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/variant.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <tuple>
+#include <variant>
+
+namespace nb = nanobind;
+
+namespace voxrt::voxelize {
+namespace {
+
+template <typename T> using InputOf = nb::ndarray<const T, nb::numpy, nb::c_contig, nb::device::cpu>;
+using Points = std::variant<InputOf<double>, InputOf<float>>;
+using Cloud = std::tuple<Points, InputOf<int32_t>, InputOf<double>>;
+using Triple = std::array<double, 3>;
+
+template <typename T> std::span<const T> span_of(const InputOf<T>& array) { return {array.data(), array.size()}; }
+
+std::vector<uint8_t> used_of(const InputOf<int32_t>& triangles, size_t vertices) {
+    for (size_t i = 0; i < triangles.size(); ++i)
+        if (triangles.data()[i] < 0 || static_cast<size_t>(triangles.data()[i]) >= vertices)
+            throw nb::value_error("triangles must index positions");
+    return triangles.size() == 0 ? std::vector<uint8_t>() : used_vertices(span_of(triangles), vertices);
+}
+
+std::tuple<Triple, Triple> scene_bounds(const std::vector<Cloud>& clouds, size_t hidden) {
+    Bounds bounds;
+    {
+        const python::LongCall call;
+        for (const auto& [points, triangles, transforms] : clouds) {
+            if (transforms.size() % 12 != 0)
+                throw nb::value_error("transforms must have shape (N, 3, 4)");
+            const std::span<const double> placed = span_of(transforms);
+            std::visit(
+                [&](const auto& positions) {
+                    const std::vector<uint8_t> used = used_of(triangles, positions.size() / 3);
+                    for (size_t i = 0; i < placed.size(); i += 12)
+                        bounds.add(span_of(positions), used, placed.subspan(i).first<12>());
+                },
+                points);
+        }
+        bounds.check(hidden);
+    }
+    return {bounds.low(), bounds.high()};
+}
+
+std::tuple<Triple, double> fit(const Triple& low, const Triple& high, unsigned depth) {
+    const FittedGrid grid = fit_grid(low, high, depth);
+    return {grid.origin, grid.voxel_size};
+}
+
+nb::object placed_vertices(const InputOf<double>& positions, const InputOf<int32_t>& triangles) {
+    const std::vector<uint8_t> used = used_of(triangles, positions.size() / 3);
+    if (std::all_of(used.begin(), used.end(), [](uint8_t one) { return one != 0; }))
+        return nb::cast(positions);
+    auto moved = std::make_unique<double[]>(positions.size());
+    std::copy_n(positions.data(), positions.size(), moved.get());
+    move_unused_vertices({moved.get(), positions.size()}, span_of(triangles));
+    return python::to_numpy(std::move(moved), {positions.size() / 3, 3});
+}
+
+std::vector<std::tuple<std::string, std::string, int64_t>>
+warnings_of(const InputOf<int64_t>& voxels, const InputOf<uint8_t>& modes, const InputOf<int64_t>& flipped,
+            const InputOf<uint8_t>& mostly_filled, const std::vector<std::string>& names,
+            const std::vector<bool>& reported) {
+    const size_t count = names.size();
+    if (voxels.size() != count || modes.size() != count || flipped.size() != count || mostly_filled.size() != count ||
+        reported.size() != count)
+        throw nb::value_error("the arrays of the objects must have one length");
+    const std::vector<uint8_t> flags(reported.begin(), reported.end());
+    std::vector<std::tuple<std::string, std::string, int64_t>> found;
+    for (const ObjectWarning& one :
+         object_warnings({span_of(voxels), span_of(modes), span_of(flipped), span_of(mostly_filled), names, flags}))
+        found.emplace_back(one.kind, one.message, one.count);
+    return found;
+}
+
+} // namespace
+
+void bind_scene(nb::module_& m) {
+    static PyObject* unfit = PyErr_NewExceptionWithDoc(
+        "voxrt.voxelize._native.UnfitSceneError",
+        "A scene that no grid fits; the arguments are what is wrong, and how to fix it.", PyExc_ValueError, nullptr);
+    m.attr("UnfitSceneError") = nb::handle(unfit);
+    static PyObject* too_many = PyErr_NewExceptionWithDoc("voxrt.voxelize._native.TooManyMaterialsError",
+                                                          "More than 255 materials.", PyExc_ValueError, nullptr);
+    m.attr("TooManyMaterialsError") = nb::handle(too_many);
+    nb::register_exception_translator(
+        [](const std::exception_ptr& failure, void*) {
+            try {
+                std::rethrow_exception(failure);
+            } catch (const UnfitScene& e) {
+                PyErr_SetObject(unfit, nb::make_tuple(e.what(), e.fix).ptr());
+            } catch (const TooManyMaterials& e) {
+                PyErr_SetString(too_many, e.what());
+            }
+        },
+        nullptr);
+    m.def(
+        "scene_bounds", &scene_bounds, nb::arg("clouds"), nb::arg("hidden"),
+        "The lowest and the highest corner of point clouds, metres: positions (V, 3) float64 or float32; triangles\n"
+        "(T, 3) int32, whose vertices count, or none, where all do; transforms (N, 3, 4) float64 to the scene frame.\n"
+        "UnfitSceneError: no point, or a coordinate that is not finite; `hidden` objects are named then.");
+    m.def("fit_grid", &fit, nb::arg("low"), nb::arg("high"), nb::arg("depth"),
+          "Origin and voxel size of the smallest grid of a depth that holds a box. UnfitSceneError: it overflows.");
+    m.def("longest_side", &longest_side, nb::arg("low"), nb::arg("high"),
+          "The longest side of a box. UnfitSceneError: it overflows.");
+    m.def("placed_vertices", &placed_vertices, nb::arg("positions"), nb::arg("triangles"),
+          "Positions (V, 3) float64 with those that no triangle (T, 3) uses moved to one that is used.");
+    m.def("object_warnings", &warnings_of, nb::arg("voxels"), nb::arg("modes"), nb::arg("flipped"),
+          nb::arg("mostly_filled"), nb::arg("names"), nb::arg("reported"),
+          "What to tell of a scene's voxels: kind, message and count each. Arguments by object.");
+    nb::class_<MaterialTable>(m, "MaterialTable", "Materials under construction; entry 0 is empty space.")
+        .def(
+            "__init__",
+            [](MaterialTable* table, std::string name, const std::array<uint8_t, 3>& colour) {
+                new (table) MaterialTable({std::move(name), colour});
+            },
+            nb::arg("name"), nb::arg("colour"), "`name` and `colour` are those of empty space.")
+        .def(
+            "add",
+            [](MaterialTable& table, std::string name, const std::array<uint8_t, 3>& colour, bool mirror,
+               bool authored) { return int{table.add({std::move(name), colour, mirror, authored})}; },
+            nb::arg("name"), nb::arg("colour"), nb::arg("mirror"), nb::arg("authored"),
+            "Add a material; returns its id. A number is appended to a name that another material has.\n"
+            "TooManyMaterialsError: there are 255.")
+        .def(
+            "entries",
+            [](const MaterialTable& table) {
+                std::vector<std::tuple<std::string, std::tuple<int, int, int>, bool, bool>> found;
+                for (const auto& [name, colour, mirror, authored] : table.entries())
+                    found.emplace_back(name, std::tuple(int{colour[0]}, int{colour[1]}, int{colour[2]}), mirror,
+                                       authored);
+                return found;
+            },
+            "Name, colour, mirror and authored of each, by id.");
+}
+
+} // namespace voxrt::voxelize

@@ -1,0 +1,234 @@
+// The surface of one object in one tile of columns, before objects compete: shell voxels and crossings.
+//
+// A tile is kTileSide x kTileSide columns over the grid's whole height. Bricks exist where the surface is; a dense
+// table of the tile finds them (4 bytes per slot of a brick) and is cleared entry by entry.
+//
+// A crossing of a column's ray is one bit in `enters` or `leaves` of the voxel it is marked at. Opposite crossings in a
+// voxel cancel; repeated ones go to a list. So the winding number along a column is a running sum of bits.
+#pragma once
+
+#include "../grid/brick.h"
+#include "covered_row.h"
+#include "triangle_coverage.h"
+
+#include <vector>
+
+namespace voxrt::voxelize {
+
+inline constexpr int kTileBricks = kTileSide / kBrickSide;
+inline constexpr int kTileColumns = kTileBricks * kTileBricks; // brick columns
+
+/// Materials of a brick voxel by voxel: index column_bit(x, y) + 64 z, 0 where empty.
+using Cells = std::array<uint8_t, kBrickVoxels>;
+
+inline constexpr uint32_t kNone = 0xFFFF'FFFF;
+
+struct ShellBrick {
+    Columns shell{}, enters{}, leaves{};
+    uint32_t cells = kNone;       // row of materials where the shell has several
+    uint32_t transparent = kNone; // row of voxels with fully transparent surface, where there is some
+    uint8_t material = 0;         // the shell's only material, else 0
+    bool crossed = false;         // enters or leaves may hold something
+    bool has_repeated = false;    // crossings of this brick are in the list of repeated ones too
+    bool has_shell() const { return material != 0 || cells != kNone; }
+};
+
+/// A crossing whose bit is already set.
+struct RepeatedCrossing {
+    uint32_t brick;
+    uint8_t z, bit;
+    bool enters;
+};
+
+class TileSurface {
+public:
+    /// For tiles of a grid of `side` voxels.
+    explicit TileSurface(int side)
+        : side_(side), height_((side + kBrickSide - 1) / kBrickSide), table_(size_t(kTileColumns) * height_, kNone) {}
+
+    int side() const { return side_; }
+    int height() const { return height_; }
+
+    /// Forgets the last object; the next one lies in the tile whose lowest column is (x, y).
+    void reset(int x, int y) {
+        for (uint32_t slot : slots_)
+            table_[slot] = kNone;
+        slots_.clear();
+        bricks_.clear();
+        cells_.clear();
+        transparent_.clear();
+        repeated_.clear();
+        x_ = x;
+        y_ = y;
+    }
+
+    /// The material of what is covered from now on, 1 … 255.
+    void set_material(uint8_t material) { material_ = material; }
+
+    /// Receives from cover_triangle that voxels lo … hi of column (x, y) are shell. A voxel keeps its first material.
+    void cover(int x, int y, int lo, int hi) {
+        const Position at_column = locate(x, y);
+        for (int k = lo >> kBrickBits; k <= hi >> kBrickBits; ++k) {
+            const int from = std::max(lo - k * kBrickSide, 0), end = std::min(hi - k * kBrickSide + 1, kBrickSide);
+            add_shell(at(at_column.column, k), at_column.row, uint64_t((1u << end) - (1u << from)) << at_column.shift);
+        }
+    }
+
+    /// The same, and cross(), for a row of the tile: window and tile have the same lowest column.
+    void cover_row(const CoveredRow& row) {
+        const int v = row.y - y_;
+        for (int group = row.from >> kBrickBits; group <= row.to >> kBrickBits; ++group) {
+            const int32_t *lo = row.lo + group * kBrickSide, *hi = row.hi + group * kBrickSide;
+            int32_t lowest = lo[0], highest = hi[0];
+            for (int i = 1; i < kBrickSide; ++i) {
+                lowest = std::min(lowest, lo[i]);
+                highest = std::max(highest, hi[i]);
+            }
+            const int first = std::max(row.crossed_from - group * kBrickSide, 0);
+            const int last = std::min(row.crossed_to - group * kBrickSide, kBrickSide - 1);
+            const uint64_t crossed = first <= last ? ~uint64_t{0} << 8 * first & ~uint64_t{0} >> 8 * (7 - last) : 0;
+            for (int k = lowest >> kBrickBits; k <= highest >> kBrickBits; ++k) {
+                const IntervalBytes bytes(lo, hi, k * kBrickSide, crossed != 0);
+                if (bytes.inside == 0)
+                    continue;
+                ShellBrick& brick = at((v >> kBrickBits) * kTileBricks + group, k);
+                add_shell(brick, v & (kBrickSide - 1), bytes.inside);
+                if ((bytes.begins & crossed) != 0)
+                    add_crossings(brick, v & (kBrickSide - 1), bytes.begins & crossed, row.enters);
+            }
+        }
+    }
+
+    /// A voxel has fully transparent surface: that alone makes it no shell, and keeps it out of the inside.
+    void cover_transparent(int x, int y, int z) {
+        const Position at_column = locate(x, y);
+        ShellBrick& brick = at(at_column.column, z >> kBrickBits);
+        if (brick.transparent == kNone) {
+            brick.transparent = uint32_t(transparent_.size());
+            transparent_.emplace_back();
+        }
+        transparent_[brick.transparent][z & (kBrickSide - 1)] |= uint64_t{1} << column_bit(x - x_, y - y_);
+    }
+
+    /// Receives from cover_triangle that the ray of column (x, y) crosses the surface at voxel z.
+    void cross(int x, int y, int z, bool enters) {
+        const Position at_column = locate(x, y);
+        add_crossings(at(at_column.column, z >> kBrickBits), at_column.row,
+                      uint64_t{1} << (at_column.shift + (z & (kBrickSide - 1))), enters);
+    }
+
+    /// Brick `k` (along z) of a brick column, or null.
+    ShellBrick* find(int column, int k) {
+        const uint32_t index = table_[size_t(column) * height_ + k];
+        return index == kNone ? nullptr : &bricks_[index];
+    }
+
+    /// The first k of `from` ... `to` - 1 where the column has a brick, or `to`.
+    int next_brick(int column, int from, int to) const {
+        const uint32_t* slots = &table_[size_t(column) * height_];
+        constexpr int kSlots = 16; // that are looked at together
+        for (; from + kSlots <= to; from += kSlots) {
+            uint32_t all = kNone;
+            for (int i = 0; i < kSlots; ++i)
+                all &= slots[from + i];
+            if (all != kNone)
+                break;
+        }
+        while (from < to && slots[from] == kNone)
+            ++from;
+        return from;
+    }
+
+    /// Brick `k` of a brick column, made where there is none.
+    ShellBrick& at(int column, int k) {
+        uint32_t& index = table_[size_t(column) * height_ + k];
+        if (index == kNone) {
+            index = uint32_t(bricks_.size());
+            bricks_.emplace_back();
+            slots_.push_back(uint32_t(size_t(column) * height_ + k));
+        }
+        return bricks_[index];
+    }
+
+    bool empty() const { return bricks_.empty(); }
+    /// Slots of all bricks: column * height() + k.
+    const std::vector<uint32_t>& slots() const { return slots_; }
+    const std::vector<RepeatedCrossing>& repeated_crossings() const { return repeated_; }
+    uint32_t index_of(const ShellBrick& brick) const { return uint32_t(&brick - bricks_.data()); }
+    const Cells& cells(uint32_t row) const { return cells_[row]; }
+
+    /// The voxels of a brick that have surface: its shell, and what is fully transparent.
+    Slices all_surface(const ShellBrick& brick, const Slices& shell) const {
+        Slices found = shell;
+        if (brick.transparent != kNone)
+            for (int z = 0; z < kBrickSide; ++z)
+                found[z] |= transparent_[brick.transparent][z];
+        return found;
+    }
+
+private:
+    /// A column of voxels: its brick column, its row there, and where its byte begins.
+    struct Position {
+        int column, row, shift;
+    };
+    Position locate(int x, int y) const {
+        const int u = x - x_, v = y - y_;
+        return {(v >> kBrickBits) * kTileBricks + (u >> kBrickBits), v & (kBrickSide - 1), (u & (kBrickSide - 1)) * 8};
+    }
+
+    void add_shell(ShellBrick& brick, int row, ColumnBytes voxels) {
+        if (brick.material != material_) {
+            if (brick.has_shell())
+                add_other_material(brick, row, voxels);
+            else
+                brick.material = material_;
+        }
+        brick.shell[row] |= voxels;
+    }
+
+    /// The first triangle keeps a voxel: only newly covered ones take the second material of a brick.
+    [[gnu::noinline]] void add_other_material(ShellBrick& brick, int row, ColumnBytes voxels) {
+        if (brick.cells == kNone) {
+            brick.cells = uint32_t(cells_.size());
+            Cells& cells = cells_.emplace_back();
+            const Slices shell = slices_of(brick.shell);
+            for (int z = 0; z < kBrickSide; ++z)
+                for (int i = 0; i < 64; ++i)
+                    cells[z * 64 + i] = shell[z] >> i & 1 ? brick.material : 0;
+            brick.material = 0;
+        }
+        Cells& cells = cells_[brick.cells];
+        for (ColumnBytes fresh = voxels & ~brick.shell[row]; fresh != 0; fresh &= fresh - 1) {
+            const int bit = std::countr_zero(fresh);
+            cells[(bit & 7) * 64 + row * kBrickSide + (bit >> 3)] = material_;
+        }
+    }
+
+    /// Rays cross the surface at voxels of a row, one of a column at most.
+    void add_crossings(ShellBrick& brick, int row, ColumnBytes voxels, bool enters) {
+        ColumnBytes& same = (enters ? brick.enters : brick.leaves)[row];
+        ColumnBytes& opposite = (enters ? brick.leaves : brick.enters)[row];
+        brick.crossed = true;
+        const ColumnBytes cancelled = voxels & opposite;
+        opposite ^= cancelled;
+        voxels ^= cancelled;
+        for (ColumnBytes repeated = voxels & same; repeated != 0; repeated &= repeated - 1) {
+            const int bit = std::countr_zero(repeated);
+            brick.has_repeated = true;
+            repeated_.push_back({index_of(brick), uint8_t(bit & 7), uint8_t(row * kBrickSide + (bit >> 3)), enters});
+        }
+        same |= voxels;
+    }
+
+    int side_, height_;
+    int x_ = 0, y_ = 0;
+    uint8_t material_ = 0;
+    std::vector<uint32_t> table_;
+    std::vector<ShellBrick> bricks_;
+    std::vector<uint32_t> slots_;
+    std::vector<Cells> cells_;
+    std::vector<Slices> transparent_;
+    std::vector<RepeatedCrossing> repeated_;
+};
+
+} // namespace voxrt::voxelize

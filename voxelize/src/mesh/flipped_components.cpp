@@ -1,0 +1,347 @@
+#include "flipped_components.h"
+
+#include "../work/disjoint_sets.h"
+#include "closed_surface.h"
+#include "triangle_bvh.h"
+
+#include <bit>
+
+namespace voxrt::voxelize {
+namespace {
+
+constexpr uint32_t kNoComponent = 0xFFFF'FFFF, kNoVertex = 0xFFFF'FFFF;
+constexpr size_t kFewComponents = 512; // up to so many are compared pair by pair
+constexpr size_t kBatch = 16;          // triangles per query
+
+using Corners = std::array<uint32_t, 3>;
+
+int sign_of(int128 v) { return v < 0 ? -1 : v > 0; }
+
+/// Six times the volume of a tetrahedron: on which side of plane abc, seen against its normal, d lies.
+int128 volume6_of(const Vertex& a, const Vertex& b, const Vertex& c, const Vertex& d) {
+    const int128 ax = int128(a.x) - d.x, ay = int128(a.y) - d.y, az = int128(a.z) - d.z;
+    const int128 bx = int128(b.x) - d.x, by = int128(b.y) - d.y, bz = int128(b.z) - d.z;
+    const int128 cx = int128(c.x) - d.x, cy = int128(c.y) - d.y, cz = int128(c.z) - d.z;
+    return ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx);
+}
+
+/// Seen from above, on which side of uv q lies. A q on the line is moved by an infinitesimal along x, then y
+/// (simulation of simplicity: Edelsbrunner and Muecke, 1990).
+int side_of(const Vertex& u, const Vertex& v, const Vertex& q) {
+    const int128 vx = int128(v.x) - u.x, vy = int128(v.y) - u.y;
+    const int128 area = vx * (int128(q.y) - u.y) - vy * (int128(q.x) - u.x);
+    return area != 0 ? sign_of(area) : vy != 0 ? -sign_of(vy) : sign_of(vx);
+}
+
+/// Whether edge pq passes through triangle abc, its edges included, from one side of its plane to the other.
+bool passes(const Vertex& p, const Vertex& q, const Vertex& a, const Vertex& b, const Vertex& c) {
+    if (sign_of(volume6_of(a, b, c, p)) * sign_of(volume6_of(a, b, c, q)) >= 0)
+        return false;
+    const int u = sign_of(volume6_of(p, q, a, b)), v = sign_of(volume6_of(p, q, b, c)),
+              w = sign_of(volume6_of(p, q, c, a));
+    return (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
+}
+
+/// Whether q, in the plane of triangle abc and in its box, lies on it.
+bool is_on(const Vertex& a, const Vertex& b, const Vertex& c, const Vertex& q) {
+    for (const auto& [i, j] : {std::pair{&Vertex::x, &Vertex::y}, {&Vertex::y, &Vertex::z}, {&Vertex::z, &Vertex::x}}) {
+        auto side = [&, i = i, j = j](const Vertex& u, const Vertex& v) {
+            return sign_of((int128(v.*i) - u.*i) * (int128(q.*j) - u.*j) -
+                           (int128(v.*j) - u.*j) * (int128(q.*i) - u.*i));
+        };
+        const int u = side(a, b), v = side(b, c), w = side(c, a);
+        if (!((u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0)))
+            return false;
+    }
+    return true;
+}
+
+struct Component {
+    std::vector<uint32_t> triangles, vertices;
+    TriangleBox box;
+    int128 volume6 = 0;
+    bool capped = false;
+    int orientation = 1; // -1: flipped
+};
+
+/// A surface and what closes it, as connected components.
+class ClosedComponents {
+public:
+    ClosedComponents(const MeshView& mesh, const std::vector<Vertex>& vertices, const HoleCaps* caps)
+        : mesh_(mesh), vertices_(vertices), caps_(caps), sets_(vertices.size()) {
+        size_t joins = 0;
+        for (size_t t = 0; t < count(); ++t)
+            if (is_closed_part(t)) {
+                count_work(1);
+                const Corners c = corners(t);
+                joins += sets_.merge(c[0], c[1]);
+                joins += sets_.merge(c[0], c[2]);
+            }
+        is_one_ = joins + 1 >= vertices.size();
+    }
+
+    /// Whether there is a single component, vertices that no triangle uses left out.
+    bool is_one() const { return is_one_; }
+
+    /// Finds the components.
+    void split() {
+        weld();
+        std::vector<uint32_t> component_at(vertices_.size(), kNoComponent), seen(vertices_.size(), kNoComponent);
+        component_of_.assign(count(), kNoComponent);
+        for (size_t t = 0; t < count(); ++t) {
+            if (!is_closed_part(t))
+                continue;
+            count_work(5);
+            const Corners c = corners(t);
+            uint32_t& component = component_at[sets_.find(c[0])];
+            if (component == kNoComponent) {
+                component = uint32_t(components_.size());
+                components_.emplace_back();
+            }
+            component_of_[t] = component;
+            Component& own = components_[component];
+            own.capped = own.capped || t >= mesh_.triangle_count();
+            for (const uint32_t v : c) {
+                own.box.add(vertices_[v]);
+                if (seen[v] == kNoComponent)
+                    own.vertices.push_back(v);
+                seen[v] = component;
+            }
+            own.triangles.push_back(uint32_t(t));
+            own.volume6 += volume6_of(vertices_[c[0]], vertices_[c[1]], vertices_[c[2]], vertices_[own.vertices[0]]);
+        }
+    }
+
+    /// Whether some component faces inwards and may be flipped, while others face outwards.
+    bool are_mixed() const {
+        bool in = false, out = false;
+        for (const Component& component : components_) {
+            if (component.capped && component.volume6 < 0)
+                return false;
+            in = in || component.volume6 < 0;
+            out = out || component.volume6 > 0 || component.capped;
+        }
+        return in && out;
+    }
+
+    /// Decides the orientation of all components.
+    void orient() {
+        std::vector<std::pair<TriangleBox, uint32_t>> boxes;
+        for (uint32_t i = 0; i < components_.size(); ++i)
+            if (may_enclose(i))
+                for (const uint32_t t : components_[i].triangles)
+                    boxes.push_back({box_of(t), t});
+        const TriangleBvh bvh(std::move(boxes));
+        std::vector<uint32_t> order(components_.size());
+        for (uint32_t i = 0; i < order.size(); ++i)
+            order[i] = i;
+        // A component comes after those that may enclose it.
+        std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+            const Component &p = components_[a], &q = components_[b];
+            if (p.box.volume() != q.box.volume())
+                return p.box.volume() > q.box.volume();
+            const int128 u = p.volume6 < 0 ? -p.volume6 : p.volume6, v = q.volume6 < 0 ? -q.volume6 : q.volume6;
+            return u != v ? u > v : a < b;
+        });
+        rank_.resize(components_.size());
+        for (uint32_t i = 0; i < order.size(); ++i)
+            rank_[order[i]] = i;
+        for (const uint32_t index : order) {
+            Component& component = components_[index];
+            if (component.capped)
+                continue;
+            int number = 0;
+            uint32_t nearest = kNoComponent;
+            for (const Enclosing& enclosing : find_enclosing(index, bvh)) {
+                number += enclosing.winding * components_[enclosing.component].orientation;
+                if (nearest == kNoComponent || rank_[enclosing.component] > rank_[nearest])
+                    nearest = enclosing.component;
+            }
+            component.orientation = number != 0 ? components_[nearest].orientation : component.volume6 < 0 ? -1 : 1;
+        }
+    }
+
+    std::shared_ptr<const FlippedComponents> flipped() const {
+        auto found = std::make_shared<FlippedComponents>();
+        for (const Component& component : components_)
+            found->count += component.orientation < 0;
+        if (found->count == 0 || found->count == components_.size())
+            return nullptr;
+        found->triangles.resize(mesh_.triangle_count());
+        for (size_t t = 0; t < mesh_.triangle_count(); ++t)
+            found->triangles[t] = is_closed_part(t) && components_[component_of_[t]].orientation < 0;
+        return found;
+    }
+
+private:
+    /// A component that lies around another, and its winding number there before flipping.
+    struct Enclosing {
+        uint32_t component;
+        int winding;
+        bool touched; // then it does not enclose
+    };
+
+    size_t count() const { return mesh_.triangle_count() + (caps_ != nullptr ? caps_->triangles.size() : 0); }
+    /// Whether a triangle belongs to what closes: not to an open component.
+    bool is_closed_part(size_t t) const {
+        return t >= mesh_.triangle_count() || caps_ == nullptr || caps_->shell_only.empty() ||
+               caps_->shell_only[t] == 0;
+    }
+    Corners corners(size_t t) const {
+        if (t >= mesh_.triangle_count())
+            return caps_->triangles[t - mesh_.triangle_count()];
+        const int32_t* c = mesh_.triangles.data() + 3 * t;
+        return {uint32_t(c[0]), uint32_t(c[1]), uint32_t(c[2])};
+    }
+    /// False where the component's box contains no other component's box.
+    bool may_enclose(uint32_t own) const {
+        if (components_.size() > kFewComponents)
+            return true;
+        for (uint32_t i = 0; i < components_.size(); ++i)
+            if (i != own && components_[own].box.contains(components_[i].box))
+                return true;
+        return false;
+    }
+    TriangleBox box_of(uint32_t t) const {
+        TriangleBox box;
+        for (const uint32_t v : corners(t))
+            box.add(vertices_[v]);
+        return box;
+    }
+
+    /// Merges vertices at one position, where the surface does not close by its indices.
+    void weld() {
+        std::vector<uint64_t> sums(vertices_.size(), 0);
+        for (size_t t = 0; t < mesh_.triangle_count(); ++t) {
+            count_work(5);
+            const auto [a, b, c] = corners(t);
+            sums[sets_.find(a)] +=
+                boundary_key(vertex_key(vertices_[a]), vertex_key(vertices_[b]), vertex_key(vertices_[c]));
+        }
+        std::vector<uint32_t> loose;
+        for (uint32_t v = 0; v < vertices_.size(); ++v)
+            if (sums[sets_.find(v)] != 0)
+                loose.push_back(v);
+        std::vector<uint32_t> first(std::bit_ceil(2 * loose.size() + 1), kNoVertex); // by hash, then the next place
+        for (const uint32_t v : loose) {
+            count_work(5);
+            size_t place = vertex_key(vertices_[v]) & (first.size() - 1);
+            while (first[place] != kNoVertex && !(vertices_[first[place]] == vertices_[v]))
+                place = (place + 1) & (first.size() - 1);
+            if (first[place] == kNoVertex)
+                first[place] = v;
+            else
+                sets_.merge(first[place], v);
+        }
+    }
+
+    /// The winding numbers of larger components at a vertex, by the triangles above it.
+    std::vector<Enclosing> winding_at(uint32_t own, uint32_t vertex, const TriangleBvh& bvh) const {
+        const Vertex& q = vertices_[vertex];
+        std::vector<Enclosing> found;
+        auto at = [&](uint32_t component) -> Enclosing& {
+            for (Enclosing& enclosing : found)
+                if (enclosing.component == component)
+                    return enclosing;
+            return found.emplace_back(Enclosing{component, 0, false});
+        };
+        const TriangleBox above{{q.x, q.y, q.z}, {q.x, q.y, INT32_MAX}};
+        bvh.find(above, [&](uint32_t t) {
+            const uint32_t component = component_of_[t];
+            if (component == kNoComponent || rank_[component] >= rank_[own])
+                return;
+            const Corners corner = corners(t);
+            const Vertex &a = vertices_[corner[0]], &b = vertices_[corner[1]], &c = vertices_[corner[2]];
+            const int height = sign_of(volume6_of(a, b, c, q));
+            if (height == 0) {
+                if (std::min({a.z, b.z, c.z}) <= q.z && is_on(a, b, c, q))
+                    at(component).touched = true;
+                return;
+            }
+            const int side = side_of(a, b, q);
+            if (side != 0 && side_of(b, c, q) == side && side_of(c, a, q) == side && height == side)
+                at(component).winding += side;
+        });
+        std::erase_if(found, [](const Enclosing& enclosing) { return enclosing.touched || enclosing.winding == 0; });
+        return found;
+    }
+
+    std::vector<Enclosing> find_enclosing(uint32_t own, const TriangleBvh& bvh) const {
+        const Component& component = components_[own];
+        std::vector<Enclosing> enclosing = winding_at(own, component.vertices[0], bvh);
+        // A component whose surface is not near a triangle encloses all of it or none of it.
+        std::vector<uint32_t> near;
+        for (size_t from = 0; from < component.triangles.size() && !enclosing.empty(); from += kBatch) {
+            const size_t to = std::min(from + kBatch, component.triangles.size());
+            TriangleBox box;
+            for (size_t i = from; i < to; ++i)
+                box.add(box_of(component.triangles[i]));
+            near.clear();
+            bvh.find(box, [&](uint32_t t) {
+                if (std::any_of(enclosing.begin(), enclosing.end(),
+                                [&](const Enclosing& one) { return one.component == component_of_[t]; }))
+                    near.push_back(t);
+            });
+            for (size_t i = from; i < to && !near.empty(); ++i)
+                keep_enclosing(own, corners(component.triangles[i]), near, bvh, enclosing);
+        }
+        return enclosing;
+    }
+
+    /// Keeps the components that enclose a triangle as well.
+    void keep_enclosing(uint32_t own, const Corners& c, const std::vector<uint32_t>& near, const TriangleBvh& bvh,
+                        std::vector<Enclosing>& enclosing) const {
+        for (const uint32_t v : c) {
+            const std::vector<Enclosing> here = winding_at(own, v, bvh);
+            std::erase_if(enclosing, [&](const Enclosing& one) {
+                return std::none_of(here.begin(), here.end(), [&](const Enclosing& other) {
+                    return other.component == one.component && other.winding == one.winding;
+                });
+            });
+        }
+        TriangleBox box;
+        for (const uint32_t v : c)
+            box.add(vertices_[v]);
+        for (const uint32_t t : near)
+            if (box.overlaps(box_of(t)))
+                std::erase_if(enclosing, [&](const Enclosing& one) {
+                    return one.component == component_of_[t] && cross(c, corners(t));
+                });
+    }
+
+    bool cross(const Corners& c, const Corners& d) const {
+        auto at = [this](uint32_t v) -> const Vertex& { return vertices_[v]; };
+        for (int i = 0; i < 3; ++i) {
+            const int j = (i + 1) % 3;
+            if (passes(at(c[i]), at(c[j]), at(d[0]), at(d[1]), at(d[2])) ||
+                passes(at(d[i]), at(d[j]), at(c[0]), at(c[1]), at(c[2])))
+                return true;
+        }
+        return false;
+    }
+
+    const MeshView& mesh_;
+    const std::vector<Vertex>& vertices_;
+    const HoleCaps* caps_;
+    DisjointSets sets_;
+    bool is_one_;
+    std::vector<uint32_t> component_of_; // by triangle
+    std::vector<Component> components_;  // by first triangle
+    std::vector<uint32_t> rank_;         // by component: larger ones first
+};
+
+} // namespace
+
+std::shared_ptr<const FlippedComponents>
+find_flipped_components(const MeshView& mesh, const std::vector<Vertex>& vertices, const HoleCaps* caps) {
+    ClosedComponents components(mesh, vertices, caps);
+    if (components.is_one())
+        return nullptr;
+    components.split();
+    if (!components.are_mixed())
+        return nullptr;
+    components.orient();
+    return components.flipped();
+}
+
+} // namespace voxrt::voxelize

@@ -1,0 +1,31 @@
+// Connected components of a surface that are inside out beside the others.
+//
+// The winding number inside a component whose normals point inwards is -1: where it overlaps another component the two
+// would cancel. So each connected closed component is made to face outwards, by the sign of its volume. But a component
+// that lies inside others may be the wall of a cavity: it keeps its orientation relative to the smallest component
+// around it, and is flipped where that one is. A component lies inside another where none of its vertices is outside
+// and the two surfaces do not cross; they may touch. All of that is decided exactly, in integers.
+//
+// Cost: the triangles, about 10 ns each, where there is one component or all face one way; else also queries of a
+// bounding volume hierarchy.
+#pragma once
+
+#include "../holes/capped_surface.h"
+
+namespace voxrt::voxelize {
+
+struct FlippedComponents {
+    std::vector<uint8_t> triangles; // by triangle of the mesh: 1 where its orientation is to be reversed
+    uint32_t count = 0;             // components
+    bool is_flipped(size_t triangle) const { return !triangles.empty() && triangles[triangle] != 0; }
+};
+
+/// Null where no component is to be flipped, or all are: then the surface as a whole is inverted.
+///
+/// `vertices`: a position per vertex, in grid space or in any finer lattice. `caps`: what closes the surface, or null
+/// where it closes by itself. Components with caps are never flipped, nor are others beside a capped one that is inside
+/// out.
+std::shared_ptr<const FlippedComponents>
+find_flipped_components(const MeshView& mesh, const std::vector<Vertex>& vertices, const HoleCaps* caps);
+
+} // namespace voxrt::voxelize

@@ -1,0 +1,243 @@
+// From one object's surface in a tile to the voxels that it claims: the shell, and what it encloses.
+//
+// Each brick column is swept upwards once, with the winding numbers of its 64 columns (column_winding.h). They do not
+// change between shell bricks, so a run of bricks there is claimed or skipped as a whole.
+//
+// Where the surface has holes, the sweep gives the winding number of the capped surface, and GeneralizedInside
+// subtracts what the caps add.
+#pragma once
+
+#include "../mesh/mesh_analysis.h"
+#include "column_winding.h"
+#include "generalized_inside.h"
+#include "tile_voxels.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace voxrt::voxelize {
+
+struct Claim {
+    int64_t voxels = 0; // that no earlier object had
+    int64_t shell = 0;  // voxels of the shell, whoever has them
+    int64_t inside = 0; // voxels that the shell encloses, whoever has them
+    bool simple = true; // all winding numbers were 0 and 1, or 0 and -1
+};
+
+class SolidFill {
+public:
+    /// Claims the shell alone.
+    Claim claim_shell(TileVoxels& tile, TileSurface& object) {
+        Claim result;
+        for (uint32_t slot : object.slots()) {
+            const int column = int(slot) / object.height(), k = int(slot) % object.height();
+            const ShellBrick& brick = *object.find(column, k);
+            const Cells* cells = brick.cells == kNone ? nullptr : &object.cells(brick.cells);
+            if (brick.has_shell())
+                result.voxels += tile.claim(column, k, slices_of(brick.shell), brick.material, cells);
+        }
+        return result;
+    }
+
+    /// Claims the shell and what it encloses. The inside takes the material `interior`.
+    Claim claim_solid(TileVoxels& tile, TileSurface& object, uint8_t interior) {
+        Claim result;
+        sort_repeated(object);
+        int lowest[kTileColumns], highest[kTileColumns];
+        std::fill_n(lowest, kTileColumns, INT_MAX);
+        std::fill_n(highest, kTileColumns, -1);
+        for (uint32_t slot : object.slots()) {
+            const int column = int(slot) / object.height(), k = int(slot) % object.height();
+            lowest[column] = std::min(lowest[column], k);
+            highest[column] = std::max(highest[column], k);
+        }
+        for (int column = 0; column < kTileColumns; ++column)
+            if (highest[column] >= 0)
+                sweep(tile, object, column, lowest[column], highest[column], interior, result);
+        return result;
+    }
+
+    /// The same for a capped surface. The inside lies within `box`; `window` is the tile's.
+    Claim claim_capped_solid(TileVoxels& tile, TileSurface& object, uint8_t interior, const CapWinding& caps,
+                             const VoxelBox& box, const Window& window) {
+        Claim result;
+        sort_repeated(object);
+        inside_.reset(caps, box, window);
+        for (int column = 0; column < kTileColumns; ++column)
+            record_winding(object, column);
+        inside_.classify();
+        for (int column = 0; column < kTileColumns; ++column)
+            sweep_capped(tile, object, column, interior, result);
+        return result;
+    }
+
+private:
+    void sort_repeated(const TileSurface& object) {
+        repeated_.assign(object.repeated_crossings().begin(), object.repeated_crossings().end());
+        std::sort(repeated_.begin(), repeated_.end(),
+                  [](const RepeatedCrossing& a, const RepeatedCrossing& b) { return a.brick < b.brick; });
+    }
+
+    /// A brick's crossings slice by slice.
+    struct Crossings {
+        explicit Crossings(const ShellBrick& brick) {
+            if (brick.crossed) {
+                enters = slices_of(brick.enters);
+                leaves = slices_of(brick.leaves);
+            }
+        }
+        Slices enters{}, leaves{};
+    };
+
+    /// Adds a slice's crossings to the running winding numbers.
+    void advance(ColumnWinding& winding, const Crossings& crossings, uint32_t brick, bool has_repeated, int z) {
+        if (has_repeated)
+            add_repeated(winding, brick, z);
+        if ((crossings.enters[z] | crossings.leaves[z]) != 0)
+            winding.add(crossings.enters[z], crossings.leaves[z]);
+    }
+
+    void sweep(TileVoxels& tile, TileSurface& object, int column, int k, int highest, uint8_t interior, Claim& result) {
+        count_work(20 * uint32_t(object.height()));
+        ColumnWinding winding;
+        const int slices = std::min(object.side(), kBrickSide);
+        while (k < object.height()) {
+            const ShellBrick* brick = object.find(column, k);
+            if (brick == nullptr) {
+                const int end = k > highest ? object.height() : object.next_brick(column, k, highest);
+                claim_run(tile, column, k, end, winding.inside(), interior, result);
+                k = end;
+                continue;
+            }
+            Slices within{};
+            const Crossings crossings(*brick);
+            const uint32_t index = object.index_of(*brick);
+            for (int z = 0; z < slices; ++z) {
+                advance(winding, crossings, index, brick->has_repeated, z);
+                within[z] = winding.inside();
+            }
+            claim_brick(tile, object, column, k, *brick, within, interior, result);
+            ++k;
+        }
+        result.simple = result.simple && winding.simple();
+    }
+
+    void claim_run(TileVoxels& tile, int column, int from, int to, uint64_t inside, uint8_t interior, Claim& result) {
+        result.inside += int64_t{to - from} * kBrickSide * std::popcount(inside);
+        if (inside == ~uint64_t{0}) {
+            result.voxels += tile.claim_full(column, from, to, interior);
+        } else if (inside != 0) {
+            Slices mask;
+            mask.fill(inside);
+            for (int k = from; k < to; ++k)
+                result.voxels += tile.claim(column, k, mask, interior, nullptr);
+        }
+    }
+
+    /// Records the winding numbers of the capped surface that the classification needs.
+    void record_winding(TileSurface& object, int column) {
+        ColumnWinding winding;
+        GeneralizedInside::Brick last;
+        for (int k = 0; k < object.height(); ++k) {
+            count_work(10);
+            const ShellBrick* brick = object.find(column, k);
+            if (brick != nullptr) {
+                const Crossings crossings(*brick);
+                for (int z = 0; z < kBrickSide; ++z) {
+                    advance(winding, crossings, object.index_of(*brick), brick->has_repeated, z);
+                    if (z == 0)
+                        last.corner = winding.at(0);
+                    if (z == kBrickSide / 2)
+                        last.middle = winding.at(column_bit(kBrickSide / 2, kBrickSide / 2));
+                }
+                last.has_surface = brick->has_shell() || brick->transparent != kNone;
+            }
+            inside_.brick(column, k) = last;
+            if (brick != nullptr)
+                last = {winding.at(0), winding.at(column_bit(kBrickSide / 2, kBrickSide / 2)), false};
+        }
+    }
+
+    void sweep_capped(TileVoxels& tile, TileSurface& object, int column, uint8_t interior, Claim& result) {
+        static const ShellBrick no_surface;
+        ColumnWinding winding;
+        for (int k = 0; k < object.height(); ++k) {
+            count_work(10);
+            const ShellBrick* found = object.find(column, k);
+            const ShellBrick& brick = found != nullptr ? *found : no_surface;
+            const GeneralizedInside::Class kind = inside_.class_of(column, k);
+            if (found == nullptr && (kind == GeneralizedInside::Class::outside ||
+                                     (kind == GeneralizedInside::Class::capped && winding.inside() == 0)))
+                continue;
+            const Slices surface = object.all_surface(brick, slices_of(brick.shell));
+            const Crossings crossings(brick);
+            const bool mixed = GeneralizedInside::is_mixed(kind);
+            Slices within{};
+            if (mixed)
+                numbers_.resize(kBrickVoxels);
+            for (int z = 0; z < kBrickSide; ++z) {
+                if (found != nullptr)
+                    advance(winding, crossings, object.index_of(brick), brick.has_repeated, z);
+                within[z] = kind == GeneralizedInside::Class::inside   ? ~uint64_t{0}
+                            : kind == GeneralizedInside::Class::capped ? winding.inside()
+                                                                       : 0;
+                for (int bit = 0; mixed && bit < 64; ++bit)
+                    numbers_[z * 64 + bit] = winding.at(bit);
+            }
+            if (mixed)
+                within = inside_.inside(column, k, surface, numbers_);
+            else if (!is_empty(within))
+                intersect(within, inside_.box_of(column, k));
+            if (is_full(within) && is_empty(surface))
+                claim_run(tile, column, k, k + 1, ~uint64_t{0}, interior, result);
+            else
+                claim_brick(tile, object, column, k, brick, within, interior, result);
+        }
+    }
+
+    static void intersect(Slices& within, const Slices& box) {
+        for (int z = 0; z < kBrickSide; ++z)
+            within[z] &= box[z];
+    }
+
+    void claim_brick(TileVoxels& tile, TileSurface& object, int column, int k, const ShellBrick& brick,
+                     const Slices& within, uint8_t interior, Claim& result) {
+        const Slices shell = slices_of(brick.shell), surface = object.all_surface(brick, shell);
+        Slices mask, hidden;
+        for (int z = 0; z < kBrickSide; ++z) {
+            hidden[z] = within[z] & ~surface[z];
+            mask[z] = shell[z] | hidden[z];
+        }
+        result.shell += count(shell);
+        result.inside += count(hidden);
+        if (is_empty(mask))
+            return;
+        const bool has_shell = brick.has_shell();
+        if (!has_shell || (brick.cells == kNone && (brick.material == interior || is_empty(hidden)))) {
+            result.voxels += tile.claim(column, k, mask, has_shell ? brick.material : interior, nullptr);
+            return;
+        }
+        Cells cells;
+        for (int z = 0; z < kBrickSide; ++z)
+            for (int bit = 0; bit < 64; ++bit) {
+                const int i = z * 64 + bit;
+                const uint8_t own = brick.cells == kNone ? brick.material : object.cells(brick.cells)[i];
+                cells[i] = shell[z] >> bit & 1 ? own : hidden[z] >> bit & 1 ? interior : 0;
+            }
+        result.voxels += tile.claim(column, k, mask, 0, &cells);
+    }
+
+    void add_repeated(ColumnWinding& winding, uint32_t brick, int z) {
+        auto it = std::lower_bound(repeated_.begin(), repeated_.end(), brick,
+                                   [](const RepeatedCrossing& s, uint32_t wanted) { return s.brick < wanted; });
+        for (; it != repeated_.end() && it->brick == brick; ++it)
+            if (it->z == z)
+                winding.add(it->enters ? uint64_t{1} << it->bit : 0, it->enters ? 0 : uint64_t{1} << it->bit);
+    }
+
+    std::vector<RepeatedCrossing> repeated_;
+    GeneralizedInside inside_;
+    std::vector<int> numbers_; // winding numbers of the capped surface in a brick, by slice and bit
+};
+
+} // namespace voxrt::voxelize

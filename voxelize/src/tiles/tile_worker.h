@@ -1,0 +1,193 @@
+// Voxelizes one tile: the surfaces of all parts that reach it, what they enclose, and what is solid by itself.
+#pragma once
+
+#include "../coverage/ellipsoid.h"
+#include "../coverage/material_raster.h"
+#include "convex_solids.h"
+#include "solid_fill.h"
+#include "tile_order.h"
+#include "triangle_bins.h"
+#include "voxelizer.h"
+
+namespace voxrt::voxelize {
+
+/// Parts whose openings exceed this share of their area are noted where they are mostly filled. Those of a scan with
+/// pinholes do not.
+inline constexpr double kNotedOpening = 0.01;
+
+/// What a thread keeps from tile to tile.
+struct Scratch {
+    explicit Scratch(int side, size_t objects, size_t parts)
+        : surface(side), tile(side), object_voxels(objects, 0), shell_of_open(objects, 0), inside_of_open(objects, 0),
+          overlaps_itself(parts, 0) {}
+    TileSurface surface;
+    TileVoxels tile;
+    SolidFill fill;
+    TileSorter sorter;
+    std::vector<Vertex> vertices;
+    std::vector<int64_t> object_voxels;
+    std::vector<int64_t> shell_of_open, inside_of_open; // by object: of parts with openings worth a note
+    std::vector<uint8_t> overlaps_itself;               // by part: ObjectFindings
+    StageSeconds seconds;
+};
+
+class TileWorker {
+public:
+    TileWorker(const std::vector<PartView>& parts, const TriangleBins& bins, int side, Fill fill)
+        : parts_(parts), bins_(bins), side_(side), fill_(fill) {}
+
+    /// `slot`: the place of `out` among the results of a block.
+    void work(uint32_t index, uint32_t slot, Scratch& s, TileResult& out) const {
+        const int tile_x = int(index) % bins_.tiles_per_side, tile_y = int(index) / bins_.tiles_per_side;
+        const Window window{tile_x * kTileSide, std::min(tile_x * kTileSide + kTileSide, side_) - 1, tile_y * kTileSide,
+                            std::min(tile_y * kTileSide + kTileSide, side_) - 1, side_ - 1};
+        s.tile.clear();
+        for (uint32_t i = bins_.starts[index], end = bins_.starts[index + 1]; i < end;) {
+            const uint32_t part = bins_.triangles[i].part;
+            uint32_t next = i + 1;
+            while (next < end && bins_.triangles[next].part == part)
+                ++next;
+            const BinnedTriangle* triangles = bins_.triangles.data() + i;
+            if (parts_[part].kind == PartKind::mesh) {
+                add_mesh(part, {triangles, next - i}, window, s);
+            } else {
+                Stopwatch lap;
+                add_solid(parts_[part], window, s);
+                s.seconds.coverage += lap();
+            }
+            i = next;
+        }
+        Stopwatch lap;
+        if (!s.tile.empty())
+            s.sorter.sort(s.tile, slot, tile_x, tile_y, out);
+        s.seconds.order += lap();
+    }
+
+private:
+    void add_solid(const PartView& part, const Window& window, Scratch& s) const {
+        const double* f = part.frame;
+        auto whole = [&](int i) { return int64_t(snap(f[i], part.object)); };
+        int64_t claimed = 0;
+        if (part.kind == PartKind::box)
+            claimed =
+                claim_convex(s.tile, window, AxisBox{{whole(0), whole(1), whole(2)}, {whole(3), whole(4), whole(5)}},
+                             fills(fill_), part.material);
+        else if (part.kind == PartKind::ball)
+            claimed = claim_convex(s.tile, window, Ball{{whole(0), whole(1), whole(2)}, whole(3)}, fills(fill_),
+                                   part.material);
+        else
+            claimed = claim_convex(s.tile, window, Ellipsoid(f), fills(fill_), part.material);
+        s.object_voxels[part.object] += claimed;
+    }
+
+    void add_mesh(uint32_t index, std::span<const BinnedTriangle> triangles, const Window& window, Scratch& s) const {
+        const PartView& part = parts_[index];
+        const MeshAnalysis& analysis = bins_.meshes[index];
+        const std::vector<Vertex>* vertices = &analysis.vertices;
+        if (vertices->empty()) {
+            s.vertices.resize(part.mesh->vertex_count());
+            for (size_t v = 0; v < s.vertices.size(); ++v)
+                s.vertices[v] = snap_vertex(part, v);
+            vertices = &s.vertices;
+        }
+        s.surface.reset(window.x0, window.y0);
+        Stopwatch lap;
+        // An instance makes its caps anew in each tile: to keep those of all instances would take too much memory.
+        std::optional<CappedSurface> own;
+        if (!analysis.capped && analysis.hole_caps)
+            own.emplace(analysis.hole_caps, [vertices](uint32_t v) { return (*vertices)[v]; });
+        const CappedSurface* capped = own ? &*own : analysis.capped.get();
+        s.seconds.holes += lap();
+        if (fills(fill_))
+            cover<true>(part, analysis, capped, *vertices, triangles, window, s.surface);
+        else
+            cover<false>(part, analysis, capped, *vertices, triangles, window, s.surface);
+        s.seconds.coverage += lap();
+        const bool has_holes = capped != nullptr && !capped->cap_winding.empty();
+        if (s.surface.empty() && !has_holes)
+            return;
+        const uint8_t interior = part.material != 0 ? part.material : part.mesh->materials[0];
+        const Claim claim = !fills(fill_) ? s.fill.claim_shell(s.tile, s.surface)
+                            : has_holes   ? s.fill.claim_capped_solid(s.tile, s.surface, interior, capped->cap_winding,
+                                                                      analysis.box, window)
+                                          : s.fill.claim_solid(s.tile, s.surface, interior);
+        s.object_voxels[part.object] += claim.voxels;
+        s.overlaps_itself[index] |= !claim.simple;
+        if (has_holes && capped->hole_caps->opening > kNotedOpening) {
+            s.shell_of_open[part.object] += claim.shell;
+            s.inside_of_open[part.object] += claim.inside;
+        }
+        (has_holes ? s.seconds.holes : s.seconds.fill) += lap();
+    }
+
+    /// An upper bound of the columns of one tile that a triangle covers.
+    static uint32_t columns_under(const Vertex& a, const Vertex& b, const Vertex& c) {
+        const int64_t x = int64_t{std::max({a.x, b.x, c.x})} - std::min({a.x, b.x, c.x});
+        const int64_t y = int64_t{std::max({a.y, b.y, c.y})} - std::min({a.y, b.y, c.y});
+        auto voxels = [](int64_t extent) { return std::min<uint32_t>(uint32_t(extent >> kFractionBits), kTileSide); };
+        return voxels(x) * voxels(y);
+    }
+
+    template <bool Cross>
+    void cover(const PartView& part, const MeshAnalysis& analysis, const CappedSurface* capped,
+               const std::vector<Vertex>& vertices, std::span<const BinnedTriangle> triangles, const Window& window,
+               TileSurface& surface) const {
+        const MeshView& mesh = *part.mesh;
+        surface.set_material(part.material);
+        const FlippedComponents* flipped = analysis.flipped.get();
+        auto add_cap = [&](size_t cap) {
+            count_work(10);
+            const auto& [a, b, c] = capped->caps[cap];
+            cross_triangle(a, b, c, window, surface);
+        };
+        auto add = [&](size_t t) {
+            const int32_t* corner = mesh.triangles.data() + 3 * t;
+            const Vertex &a = vertices[corner[0]], &b = vertices[corner[1]], &c = vertices[corner[2]];
+            count_work(10 + columns_under(a, b, c));
+            if (part.material == 0)
+                surface.set_material(mesh.materials[t]);
+            auto cover_with = [&](auto& receiver) {
+                if (capped != nullptr && capped->is_shell_only(t))
+                    cover_triangle<false>(a, b, c, window, false, receiver);
+                else if (flipped != nullptr && flipped->is_flipped(t))
+                    cover_triangle<Cross>(a, c, b, window, analysis.inverted, receiver);
+                else
+                    cover_triangle<Cross>(a, b, c, window, analysis.inverted, receiver);
+            };
+            if (part.material != 0 || !mesh.rasters.has_raster(t)) {
+                cover_with(surface);
+            } else {
+                const TriangleRaster raster(a, b, c, mesh.rasters, t);
+                RasterSurface rastered(surface, raster);
+                cover_with(rastered);
+            }
+        };
+        if (triangles[0].triangle != kWholePart) {
+            for (const BinnedTriangle& binned : triangles)
+                if (binned.triangle < mesh.triangle_count())
+                    add(binned.triangle);
+                else if (binned.triangle - mesh.triangle_count() < capped->caps.size())
+                    add_cap(binned.triangle - mesh.triangle_count());
+            return;
+        }
+        for (size_t cap = 0; capped != nullptr && cap < capped->caps.size(); ++cap)
+            add_cap(cap);
+        const int64_t x0 = window.x0 * kUnit, x1 = (window.x1 + 1) * kUnit;
+        const int64_t y0 = window.y0 * kUnit, y1 = (window.y1 + 1) * kUnit;
+        for (size_t t = 0; t < mesh.triangle_count(); ++t) {
+            count_work(1);
+            const int32_t* corner = mesh.triangles.data() + 3 * t;
+            const Vertex &a = vertices[corner[0]], &b = vertices[corner[1]], &c = vertices[corner[2]];
+            if (std::max({a.x, b.x, c.x}) >= x0 && std::min({a.x, b.x, c.x}) <= x1 && std::max({a.y, b.y, c.y}) >= y0 &&
+                std::min({a.y, b.y, c.y}) <= y1)
+                add(t);
+        }
+    }
+
+    const std::vector<PartView>& parts_;
+    const TriangleBins& bins_;
+    int side_;
+    Fill fill_;
+};
+
+} // namespace voxrt::voxelize

@@ -1,0 +1,312 @@
+#include "voxelizer.h"
+
+#include "tile_worker.h"
+
+#include <optional>
+
+namespace voxrt::voxelize {
+namespace {
+
+/// Adds the octant of a whole cube. Eight equal octants in a row that share a parent become the parent.
+void push_cube(SparseVoxels& out, uint64_t code, uint8_t level, uint8_t material) {
+    auto& codes = out.octant_codes;
+    auto& levels = out.octant_levels;
+    auto& materials = out.octant_materials;
+    codes.push_back(code);
+    levels.push_back(level);
+    materials.push_back(material);
+    while (codes.size() >= 8 && (codes.back() & 7) == 7) {
+        const size_t first = codes.size() - 8;
+        for (size_t i = first; i < codes.size(); ++i)
+            if (levels[i] != levels.back() || materials[i] != materials.back() || codes[i] >> 3 != codes.back() >> 3)
+                return;
+        codes.resize(first + 1);
+        levels.resize(first + 1);
+        materials.resize(first + 1);
+        codes[first] >>= 3;
+        ++levels[first];
+    }
+}
+
+/// Appends the octants of all runs. Those of a cube are joined already.
+void gather_octants(const std::vector<TileResult>& tiles, const std::vector<CubeRun>& runs, SparseVoxels& out) {
+    size_t most = 0;
+    for (const CubeRun& run : runs)
+        most += run.octants_to - run.octants_from;
+    out.octant_codes.reserve(most);
+    out.octant_levels.reserve(most);
+    out.octant_materials.reserve(most);
+    const auto append = [](auto& to, const auto& from, const CubeRun& run) {
+        to.insert(to.end(), from.begin() + run.octants_from, from.begin() + run.octants_to);
+    };
+    for (const CubeRun& run : runs) {
+        const TileResult& tile = tiles[run.tile];
+        const uint32_t i = run.octants_from;
+        if (i + 1 == run.octants_to && tile.octant_levels[i] == kCubeLevel) {
+            push_cube(out, tile.octant_codes[i], kCubeLevel, tile.octant_materials[i]);
+        } else {
+            append(out.octant_codes, tile.octant_codes, run);
+            append(out.octant_levels, tile.octant_levels, run);
+            append(out.octant_materials, tile.octant_materials, run);
+        }
+    }
+}
+
+/// Lays the bricks and octants of all tiles out one after another.
+void gather(const std::vector<TileResult>& tiles, SparseVoxels& out, const Workers& workers) {
+    std::vector<CubeRun> runs;
+    for (const TileResult& tile : tiles)
+        runs.insert(runs.end(), tile.runs.begin(), tile.runs.end());
+    std::sort(runs.begin(), runs.end(), [](const CubeRun& a, const CubeRun& b) { return a.code < b.code; });
+    gather_octants(tiles, runs, out);
+
+    // Rows keep the order of their bricks.
+    std::vector<size_t> brick_starts, row_starts;
+    size_t bricks = 0, rows = 0;
+    for (const CubeRun& run : runs) {
+        brick_starts.push_back(bricks);
+        row_starts.push_back(rows);
+        bricks += run.bricks_to - run.bricks_from;
+        rows += run.rows;
+    }
+    out.brick_codes.resize(bricks);
+    out.brick_masks.resize(bricks);
+    out.brick_materials.resize(bricks);
+    out.brick_rows.resize(bricks);
+    out.cells.resize(rows);
+    constexpr size_t kRuns = 64; // per job
+    workers.run((runs.size() + kRuns - 1) / kRuns, [&](size_t job, int) {
+        for (size_t r = job * kRuns; r < std::min(runs.size(), (job + 1) * kRuns); ++r) {
+            const CubeRun& run = runs[r];
+            const TileResult& tile = tiles[run.tile];
+            size_t to = brick_starts[r], row = row_starts[r];
+            for (uint32_t i = run.bricks_from; i < run.bricks_to; ++i, ++to) {
+                out.brick_codes[to] = tile.brick_codes[i];
+                out.brick_masks[to] = tile.brick_masks[i];
+                out.brick_materials[to] = tile.brick_materials[i];
+                out.brick_rows[to] = -1;
+                if (tile.brick_rows[i] >= 0) {
+                    out.brick_rows[to] = int32_t(row);
+                    out.cells[row++] = tile.cells[tile.brick_rows[i]];
+                }
+            }
+        }
+    });
+}
+
+/// Bits 0, 2, 4 … of a Morton code in two dimensions.
+uint32_t every_other_bit(uint64_t code) {
+    uint32_t result = 0;
+    for (int bit = 0; bit < 16; ++bit)
+        result |= uint32_t(code >> 2 * bit & 1) << bit;
+    return result;
+}
+
+/// Adds what the threads found of all objects, and forgets it.
+void tally_objects(const std::vector<PartView>& parts, std::vector<std::unique_ptr<Scratch>>& scratch,
+                   std::vector<ObjectTally>& out) {
+    for (const auto& s : scratch) {
+        if (!s)
+            continue;
+        for (size_t i = 0; i < out.size(); ++i)
+            out[i].add({s->object_voxels[i], s->shell_of_open[i], s->inside_of_open[i], 0});
+        for (size_t p = 0; p < parts.size(); ++p)
+            out[parts[p].object].overlaps_itself |= int64_t{s->overlaps_itself[p]};
+        std::fill(s->object_voxels.begin(), s->object_voxels.end(), 0);
+        std::fill(s->shell_of_open.begin(), s->shell_of_open.end(), 0);
+        std::fill(s->inside_of_open.begin(), s->inside_of_open.end(), 0);
+        std::fill(s->overlaps_itself.begin(), s->overlaps_itself.end(), uint8_t{0});
+    }
+}
+
+/// Sets the voxels, modes and flipped components of all objects.
+void report_objects(const std::vector<PartView>& parts, Fill fill, const TriangleBins& bins,
+                    const std::vector<ObjectTally>& tallies, SparseVoxels& out) {
+    const size_t objects = tallies.size();
+    out.object_voxels.resize(objects);
+    out.object_modes.resize(objects);
+    out.object_flipped.assign(objects, 0);
+    out.object_mostly_filled.resize(objects);
+    std::vector<ObjectFindings> found(objects);
+    for (size_t i = 0; i < objects; ++i) {
+        out.object_voxels[i] = tallies[i].voxels;
+        found[i].overlaps_itself = tallies[i].overlaps_itself != 0;
+    }
+    for (size_t p = 0; p < parts.size(); ++p) {
+        const MeshAnalysis& mesh = bins.meshes[p];
+        ObjectFindings& object = found[parts[p].object];
+        object.has_boundary |= parts[p].kind == PartKind::mesh && !mesh.closed;
+        object.has_open_enclosure |= mesh.hole_caps && mesh.hole_caps->has_open_enclosure;
+        if (mesh.flipped) {
+            object.has_flipped_components |= mesh.closed;
+            out.object_flipped[parts[p].object] += mesh.flipped->count;
+        }
+    }
+    for (size_t i = 0; i < objects; ++i) {
+        out.object_modes[i] = uint8_t(object_mode(fill, found[i]));
+        out.object_mostly_filled[i] = tallies[i].inside_of_open > tallies[i].shell_of_open;
+    }
+}
+
+} // namespace
+
+SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads) {
+    SparseVoxels all;
+    all.depth = unsigned(depth);
+    all.clear();
+    SparseVoxels report = voxelize_in_blocks(depth, parts, objects, fill, threads, 1 << depth,
+                                             [&](SparseVoxels&& block) { all = std::move(block); });
+    all.object_voxels = std::move(report.object_voxels);
+    all.object_modes = std::move(report.object_modes);
+    all.object_flipped = std::move(report.object_flipped);
+    all.object_mostly_filled = std::move(report.object_mostly_filled);
+    all.seconds = report.seconds;
+    return all;
+}
+
+SparseVoxels voxelize_in_blocks(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads,
+                                int block_side, const TakeBlock& take) {
+    BlockVoxelizer voxelizer(depth, parts, objects, fill, threads);
+    const std::vector<ColumnBlock> blocks = voxelizer.blocks(block_side);
+    std::vector<ObjectTally> tallies(objects);
+    SparseVoxels report;
+    if (blocks.empty())
+        report = voxelizer.report(tallies);
+    for (const ColumnBlock& block : blocks)
+        take(&block == &blocks.back() ? voxelizer.last_block(block, tallies, report) : voxelizer.block(block, tallies));
+    report.seconds = voxelizer.seconds();
+    return report;
+}
+
+struct BlockVoxelizer::State {
+    State(int depth, std::vector<PartView> scene_parts, size_t object_count, Fill how, int threads)
+        : depth(unsigned(depth)), side(1 << depth), parts(std::move(scene_parts)), objects(object_count), fill(how),
+          workers(threads), scratch(size_t(workers.threads())) {}
+
+    TileRange tiles_of(const ColumnBlock& block) const {
+        const int end = bins.tiles_per_side;
+        const int step = std::max(1, (block.side + kTileSide - 1) / kTileSide);
+        const int x0 = block.x / kTileSide, y0 = block.y / kTileSide;
+        return {x0, std::min(x0 + step, end) - 1, y0, std::min(y0 + step, end) - 1};
+    }
+
+    std::vector<uint32_t> occupied(const ColumnBlock& block) const {
+        std::vector<uint32_t> found;
+        const TileRange range = tiles_of(block);
+        for (int y = range.y0; y <= range.y1; ++y)
+            for (int x = range.x0; x <= range.x1; ++x)
+                if (const auto t = uint32_t(y * bins.tiles_per_side + x); bins.starts[t] < bins.starts[t + 1])
+                    found.push_back(t);
+        return found;
+    }
+
+    std::vector<TileResult> results(const ColumnBlock& block, std::vector<ObjectTally>& tallies) {
+        lap();
+        const std::vector<uint32_t> tiles = occupied(block);
+        std::vector<TileResult> found(tiles.size());
+        const TileWorker worker(parts, bins, side, fill);
+        workers.run(tiles.size(), [&](size_t job, int thread) {
+            if (!scratch[size_t(thread)])
+                scratch[size_t(thread)] = std::make_unique<Scratch>(side, objects, parts.size());
+            worker.work(tiles[job], uint32_t(job), *scratch[size_t(thread)], found[job]);
+        });
+        StageSeconds sum;
+        for (const auto& s : scratch)
+            if (s)
+                sum.add_tiles(s->seconds, 1);
+        StageSeconds fresh = sum;
+        fresh.add_tiles(before, -1);
+        before = sum;
+        if (fresh.of_tiles() > 0)
+            seconds.add_tiles(fresh, lap() / fresh.of_tiles());
+        tally_objects(parts, scratch, tallies);
+        return found;
+    }
+
+    SparseVoxels gathered(std::vector<TileResult> found) {
+        SparseVoxels out;
+        out.depth = depth;
+        gather(found, out, workers);
+        seconds.gather += lap();
+        return out;
+    }
+
+    unsigned depth;
+    int side;
+    std::vector<PartView> parts;
+    size_t objects;
+    Fill fill;
+    Workers workers;
+    TriangleBins bins;
+    std::vector<std::unique_ptr<Scratch>> scratch;
+    Stopwatch lap;
+    StageSeconds seconds, before;
+};
+
+BlockVoxelizer::BlockVoxelizer(int depth, std::vector<PartView> parts, size_t objects, Fill fill, int threads,
+                               std::span<const uint8_t> wanted)
+    : state_(std::make_unique<State>(depth, std::move(parts), objects, fill, threads)) {
+    State& s = *state_;
+    s.bins = bin_triangles(s.parts, wanted, s.side, fill, s.workers);
+    s.seconds.bin = s.bins.seconds;
+    s.seconds.analysis = s.lap() - s.bins.seconds;
+}
+
+BlockVoxelizer::~BlockVoxelizer() = default;
+
+void BlockVoxelizer::use_threads(int threads) {
+    state_->workers = Workers(threads);
+    state_->scratch.resize(std::max(state_->scratch.size(), size_t(state_->workers.threads())));
+}
+
+std::vector<ColumnBlock> BlockVoxelizer::blocks(int block_side) const {
+    const int tiles = state_->bins.tiles_per_side;
+    const int step = std::clamp((block_side + kTileSide - 1) / kTileSide, 1, tiles);
+    const int per_side = (tiles + step - 1) / step;
+    uint64_t codes = 1; // of blocks, in Morton order
+    while (codes < uint64_t(per_side))
+        codes *= 2;
+    codes *= codes;
+    std::vector<ColumnBlock> found;
+    for (uint64_t code = 0; code < codes; ++code) {
+        const int x = int(every_other_bit(code)) * step, y = int(every_other_bit(code >> 1)) * step;
+        const ColumnBlock block{x * kTileSide, y * kTileSide, step * kTileSide};
+        if (x < tiles && y < tiles && !state_->occupied(block).empty())
+            found.push_back(block);
+    }
+    return found;
+}
+
+std::vector<uint8_t> BlockVoxelizer::objects_of(const ColumnBlock& block) const {
+    const TriangleBins& bins = state_->bins;
+    std::vector<uint8_t> found(state_->objects, 0);
+    for (const uint32_t tile : state_->occupied(block))
+        for (uint32_t i = bins.starts[tile]; i < bins.starts[tile + 1]; ++i)
+            found[state_->parts[bins.triangles[i].part].object] = 1;
+    return found;
+}
+
+SparseVoxels BlockVoxelizer::block(const ColumnBlock& block, std::vector<ObjectTally>& tallies) {
+    return state_->gathered(state_->results(block, tallies));
+}
+
+SparseVoxels BlockVoxelizer::last_block(const ColumnBlock& block, std::vector<ObjectTally>& tallies,
+                                        SparseVoxels& report) {
+    std::vector<TileResult> results = state_->results(block, tallies);
+    report = this->report(tallies);
+    state_->scratch.clear(); // the peak of memory use is in what follows
+    state_->bins = {};
+    return state_->gathered(std::move(results));
+}
+
+SparseVoxels BlockVoxelizer::report(const std::vector<ObjectTally>& tallies) const {
+    SparseVoxels out;
+    out.depth = state_->depth;
+    out.clear();
+    report_objects(state_->parts, state_->fill, state_->bins, tallies, out);
+    return out;
+}
+
+const StageSeconds& BlockVoxelizer::seconds() const { return state_->seconds; }
+
+} // namespace voxrt::voxelize
