@@ -50,7 +50,7 @@ def joined() -> str:
     heads = ["configuration", "frame", *area_heads]
     heads += [f"{scene}, cycles per pixel" for scene in SCENES.values()]
     lines = [
-        f"Cycles per pixel at {SIZE}. Area: an estimate of yosys `synth_xilinx`; the area of the original is from Vivado.",
+        f"Cycles per pixel at {SIZE}. Area: an estimate of yosys `synth_xilinx`; that of the original is by Vivado.",
         "",
         f"| {' | '.join(heads)} |",
         "|---" * len(heads) + "|",

@@ -1,2 +1,0 @@
-#define VOXRT_OPEN_RAYS open_rays_portable
-#include "parallel_rays_body.h"

@@ -1,2 +1,0 @@
-#define VOXRT_SWEEP sweep_avx2
-#include "sweep_body.h"

@@ -1,2 +1,0 @@
-#define VOXRT_SWEEP sweep_portable
-#include "sweep_body.h"

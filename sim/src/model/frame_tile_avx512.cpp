@@ -1,2 +1,0 @@
-#define VOXRT_RENDER_TILE render_tile_avx512
-#include "frame_tile_body.h"

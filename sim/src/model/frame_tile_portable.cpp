@@ -1,2 +1,0 @@
-#define VOXRT_RENDER_TILE render_tile_portable
-#include "frame_tile_body.h"
