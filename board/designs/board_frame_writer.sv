@@ -1,5 +1,5 @@
-// Writes the core's video stream (rtl/voxrt_pixel_packer.sv) into one of two frames in the SDRAM, as it comes: a row of
-// the picture has 64 lines of 32 bytes, of which 640 pixels take 60. What is beyond is dropped.
+// Writes the core's video stream (rtl/shading/voxrt_pixel_packer.sv) into one of two frames in the SDRAM, as it comes. A
+// row of the picture has 64 lines of 32 bytes, of which 640 pixels take 60. What is beyond is dropped.
 module board_frame_writer
   import board_pkg::*;
 (
