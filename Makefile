@@ -69,7 +69,7 @@ soak: $(VENV)/.installed
 BENCHES :=
 hardware: $(VENV)/.hardware
 	PATH="$(abspath $(BIN)):$$PATH" $(BIN)/python rtl/generate.py
-	git diff --exit-code -- rtl/generated board/registers.py
+	git diff --exit-code -- rtl/generated
 	$(BIN)/python rtl/benches/coverage.py $(BENCHES)
 	$(BIN)/python rtl/formal/prove.py
 

@@ -111,20 +111,20 @@ def main() -> None:
     parser.add_argument("--write", action="store_true", help="write bench/results/animation.md")
     parser.add_argument("--plot", type=Path, help="draw words against frames into this file")
     parser.add_argument("--depth", type=int, nargs="+", default=[7, 8], help="levels of the grids")
-    asked = parser.parse_args()
+    options = parser.parse_args()
     started = time.perf_counter()
     rows, found = [], []
-    for name, moves, built in scenes(tuple(asked.depth)):
+    for name, moves, built in scenes(tuple(options.depth)):
         rows.append(row(name, moves, built))
         print(json.dumps(dict(zip(HEAD, rows[-1], strict=True))), flush=True)
-        if built.octree.depth == asked.depth[0]:
+        if built.octree.depth == options.depth[0]:
             found.append((name, built))
     page = table(rows)
     print(page, f"{time.perf_counter() - started:.0f} s")
-    if asked.write:
+    if options.write:
         RESULTS.write_text(page, encoding="utf-8")
-    if asked.plot:
-        plot(found, asked.plot)
+    if options.plot:
+        plot(found, options.plot)
 
 
 if __name__ == "__main__":

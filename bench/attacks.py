@@ -203,10 +203,10 @@ async def _refused(target: Target, files: dict[str, bytes], problem: str) -> Non
         try:
             await target.controller.upload(files, ignore)
         except Refused as refusal:
-            said = str(refusal)
+            answer = str(refusal)
         else:
-            said = "nothing: it was loaded"
-        assert problem in said, f"{', '.join(files)}: the server said {said}"
+            answer = "nothing: it was loaded"
+        assert problem in answer, f"{', '.join(files)}: the server said {answer}"
 
 
 async def _send_bytes(port: int, request: bytes) -> None:

@@ -41,11 +41,11 @@ from voxrt.board.designs.boot_table import (
 from voxrt.board.designs.simulation.board_simulation import BoardSimulation, compile_placed
 from voxrt.board.designs.simulation.placed_netlist import MODELS, placed_verilog, write_block_rams
 from voxrt.board.register_writes import camera_writes
-from voxrt.board.scene import relocate
 from voxrt.board.simulated.model import ModelDevice
 from voxrt.board.view import Lighting, View
 from voxrt.boards.board_scenes import load_scene
 from voxrt.octree.camera import look_at
+from voxrt.octree.words import move_pointers
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -163,7 +163,7 @@ def verify_scene(placed: Placed, file: str, scene: Scene, new: Scene | None, wor
             base = -(-len(scene.words) // 8) * 8
             control = (BOARD_REGISTERS["control"], [1 << 8 | SCALE << 4 | STEERED | RUN])
             swap = [*scene_writes(new, Lighting(), SIZE, base), *camera_writes(orbit(new)[9]), control]
-            done = send(simulation, OCTREE_MEMORY + 4 * base, relocate(new.words, base).tolist())
+            done = send(simulation, OCTREE_MEMORY + 4 * base, move_pointers(new.words, base).tolist())
             done &= send(simulation, TABLE + 4 * FREE_LIST, encode_list(swap))
             done &= send(simulation, BOARD_REGISTERS["play"], [FREE_LIST])
             after = simulation.frames(placed.black + 2)[-1][0]

@@ -22,12 +22,10 @@ from typing import NamedTuple
 
 import voxrt
 from voxrt import octree
-from voxrt.plans.blockwise import block_voxelizer, plan_build
-from voxrt.plans.cluster import cluster_side
+from voxrt.plans.by_workers import JOINERS, MOST_PIECES, cluster_side, squares
+from voxrt.plans.plan import plan_build
+from voxrt.plans.tile_making import block_voxelizer
 
-FAN_IN = 4
-MOST_PIECES = 16
-JOINERS = 8
 MEMORY = "2G"
 RESULTS = Path(__file__).resolve().parent / "results" / "cluster.md"
 
@@ -48,10 +46,10 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=2)
     parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
     options = parser.parse_args()
-    asked = [(Path(path), int(depth)) for path, _, depth in (one.rpartition(":") for one in options.assets)]
+    runs = [(Path(path), int(depth)) for path, _, depth in (one.rpartition(":") for one in options.assets)]
     costs = ["| asset | side | one process, s | two workers, s | more |", "|---|--:|--:|--:|--:|"]
     print("\n".join(costs))
-    for asset, depth in asked:
+    for asset, depth in runs:
         costs.append(compare(asset, depth, options.fill, options.rounds))
         print(costs[-1], flush=True)
     plans = [
@@ -59,7 +57,7 @@ def main() -> None:
         "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|",
     ]
     print("\n" + "\n".join(plans))
-    for asset, depth in asked:
+    for asset, depth in runs:
         for workers in options.workers:
             plans.append(plan(asset, depth, options.fill, workers))
             print(plans[-1], flush=True)
@@ -117,7 +115,7 @@ def plan(asset: Path, depth: int, fill: str, workers: int) -> str:
     voxelizer = block_voxelizer(scene, grid, options)
     voxelizer.prepare()
     analysis = process_time() - begun
-    blocks = voxelizer.blocks(cluster_side(voxelizer, grid, plan_build(scene, grid, options, on_disk=True), workers))
+    blocks = voxelizer.blocks(cluster_side(voxelizer, plan_build(scene, grid, options, on_disk=True), workers))
     tiles: dict[tuple[int, int], Made] = {}
     for block in blocks:
         begun = process_time()
@@ -125,10 +123,7 @@ def plan(asset: Path, depth: int, fill: str, workers: int) -> str:
         tiles[block.x // block.side, block.y // block.side] = Made(tree, process_time() - begun)
     levels = [tiles]
     while workers >= JOINERS and len(levels[-1]) > MOST_PIECES:
-        groups: dict[tuple[int, int], list[Made]] = {}
-        for (x, y), piece in levels[-1].items():
-            groups.setdefault((x // FAN_IN, y // FAN_IN), []).append(piece)
-        levels.append({place: joined(depth, parts) for place, parts in groups.items()})
+        levels.append({place: joined(depth, parts) for place, parts in squares(levels[-1]).items()})
     last = joined(depth, list(levels[-1].values())).seconds
     size = sum(one.tree.words.nbytes for one in tiles.values()) / 1e6
     total, largest = sum(one.seconds for one in tiles.values()), max(one.seconds for one in tiles.values())

@@ -132,16 +132,16 @@ def main() -> None:
     parser.add_argument("--only", choices=("pictures", "cost"))
     parser.add_argument("--config", default="cached16")
     parser.add_argument("--write", action="store_true")
-    asked = parser.parse_args()
+    options = parser.parse_args()
     if not ASSETS.is_dir():
         sys.exit(f"there is no folder of assets at {ASSETS}; name one by VOXRT_ASSETS")
     tables = []
-    if asked.only != "cost":
+    if options.only != "cost":
         tables += [pictures(times) for times in DISTANCES]
-    if asked.only != "pictures":
-        tables.append(costs(asked.config))
+    if options.only != "pictures":
+        tables.append(costs(options.config))
     found = {table.title: table.text() for table in tables}
-    if asked.write and asked.only:
+    if options.write and options.only:
         found = written() | found
     text = "# Level of detail\n\n`python bench/lod.py --write`. "
     text += "A number is the width in pixels of the widest cell that rays stop at.\n"
@@ -149,7 +149,7 @@ def main() -> None:
     text += "They are compared with pictures of 16 samples per pixel.\n\n"
     text += "\n".join(found.values())
     print(text)
-    if asked.write:
+    if options.write:
         RESULTS.write_text(text, encoding="utf-8")
 
 

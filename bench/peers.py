@@ -74,9 +74,9 @@ def once(tool: str, file: Path, depth: int, seconds: float, limit: int) -> dict[
         for stream in (out, err):
             stream.seek(0)
         if process.returncode != 0:
-            said = err.read().decode("utf-8", "replace")
-            died = process.returncode < 0 and "Error" not in said
-            return "out of memory" if died or any(word in said for word in NO_MEMORY) else said.splitlines()[-1]
+            errors = err.read().decode("utf-8", "replace")
+            died = process.returncode < 0 and "Error" not in errors
+            return "out of memory" if died or any(word in errors for word in NO_MEMORY) else errors.splitlines()[-1]
         return {"wall": wall, "peak": ended[2].ru_maxrss / 1024, **json.loads(out.read().splitlines()[-1])}
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.octree import from_dense
+from voxrt.octree.dialects import leaf_materials
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -82,9 +83,7 @@ def corner_camera(depth: int, size: tuple[int, int]) -> NDArray[np.int32]:
 def published_house(folder: Path) -> NDArray[np.uint32]:
     """Read the published house; its air is both FFFFFFF0 and FFFFFF00."""
     words = np.array([int(word, 16) for word in (folder / "house.mem").read_text().split()], np.uint32)
-    leaf = words >= 0xFFFFFFF0
-    words[leaf] = 0xFFFFFF00 | (words[leaf] & 7)
-    return words
+    return leaf_materials(words, "seed-rtl")
 
 
 def scenes(memories: Path, size: tuple[int, int]) -> list[Scene]:

@@ -112,7 +112,7 @@ def main() -> None:
         command = (*build, "sphere.obj", "--depth", str(depth), "--json", "-o", "large")
         rows[f"sphere of 70,224 triangles, depth {depth}"] = command
     taken: dict[str, list[tuple[float, float]]] = {name: [] for name in rows}
-    told: dict[str, list[float]] = {name: [] for name in rows}
+    shares: dict[str, list[float]] = {name: [] for name in rows}
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "tetrahedron.obj").write_text(TETRAHEDRON)
@@ -125,7 +125,7 @@ def main() -> None:
                     continue
                 taken[row].append((wall, processor))
                 if "--json" in command:
-                    told[row].append(sum(json.loads(output)["seconds"].values()) / wall)
+                    shares[row].append(sum(json.loads(output)["seconds"].values()) / wall)
         table_of_steps = steps(folder / "sphere.ply", options.runs)
     lines = [
         "| process | wall, median | wall, least | processor, least | seconds of `--json`, of the wall |",
@@ -133,7 +133,7 @@ def main() -> None:
     ]
     for row, runs in taken.items():
         walls, processors = zip(*runs, strict=True)
-        share = f"{100 * statistics.median(told[row]):.0f} %" if told[row] else ""
+        share = f"{100 * statistics.median(shares[row]):.0f} %" if shares[row] else ""
         lines.append(
             f"| {row} | {statistics.median(walls):.3f} s | {min(walls):.3f} s | {min(processors):.3f} s | {share} |"
         )

@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from .frame_drop import FrameDrop
-    from .view import View
+    from voxrt.board.frame_drop import FrameDrop
+    from voxrt.board.view import View
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,10 +13,9 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from .device import Counters, Frame, Identity
-from .errors import DeviceError, FrameDropped, TooSlow
-from .external_memory import ExternalMemory
-from .register_writes import (
+from voxrt.board.device import Counters, Frame, Identity
+from voxrt.board.errors import DeviceError, FrameDropped, TooSlow
+from voxrt.board.register_writes import (
     PROBLEMS,
     camera_writes,
     decode_fields,
@@ -26,18 +25,18 @@ from .register_writes import (
     register_writes,
     tell_problems,
 )
-from .registers import MATERIALS, REGISTERS
-from .scene import EMPTY_LEAF
-from .view import FEATURES
+from voxrt.board.registers import MATERIALS, REGISTERS
+from voxrt.board.view import FEATURES
+from voxrt.octree.words import EMPTY
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import NDArray
 
-    from .frame_drop import FrameDrop
-    from .register_writes import Writes
-    from .view import View
+    from voxrt.board.frame_drop import FrameDrop
+    from voxrt.board.register_writes import Writes
+    from voxrt.board.view import View
 
 _MINOR = 3
 _IDENTITY = int.from_bytes(b"VXRT", "big")
@@ -46,17 +45,21 @@ _TO_RED_GREEN_BLUE = (2, 0, 1)  # the stream's bytes are green, blue, red
 
 
 class Registers(Protocol):
-    """The register block; :class:`pynq.MMIO` is one."""
+    """The register block. Each call may be a message to the board and its answer."""
 
-    def read(self, offset: int, /) -> int:
-        """Read the register at a byte address."""
+    def read(self, offsets: Sequence[int], /) -> Sequence[int]:
+        """Read the registers at byte addresses, in their order."""
 
-    def write(self, offset: int, value: int, /) -> None:
-        """Write the register at a byte address."""
+    def write(self, writes: Writes, /) -> None:
+        """Write words from byte addresses on, in their order."""
 
 
 class Memory(Protocol):
-    """The words of the scene memory; a NumPy array of uint32 is one."""
+    """The words of the scene memory."""
+
+    @property
+    def base(self) -> int | None:
+        """Byte address of external memory on the core's bus; None for memory on the chip."""
 
     def __len__(self) -> int:
         """Give the number of words."""
@@ -108,7 +111,7 @@ class RegisterDevice:
     registers
         The register block.
     memory
-        The scene memory; an :class:`~.external_memory.ExternalMemory` where it is external.
+        The scene memory.
     video
         The receiver of the frames.
     pause
@@ -138,20 +141,22 @@ class RegisterDevice:
         self._video = video
         self._pause = pause
         self._stopped = threading.Event()
-        self._external = memory if isinstance(memory, ExternalMemory) else None
+        self._external = memory.base is not None
         self._caches_stale = False
-        if self._read("identity") != _IDENTITY:
+        identity, version_word = self._read("identity", "version")
+        if identity != _IDENTITY:
             raise DeviceError(f"{name}: the ray tracer does not answer; load the bitstream of voxrt")
-        version = self._fields("version")
+        version = decode_fields("version", version_word)
         if version["major"] != 0:
-            raise DeviceError(f"{name}: register version {version['major']} is not supported; upgrade voxrt-board")
+            raise DeviceError(f"{name}: register version {version['major']} is not supported; upgrade voxrt")
         if version["minor"] < _MINOR:
             raise DeviceError(
                 f"{name}: register version 0.{version['minor']} is older than 0.{_MINOR}, which has the brightness of "
                 "faces; load the bitstream of this release"
             )
-        configuration = self._fields("configuration")
-        if bool(configuration["cached"]) != (self._external is not None):
+        names = ("configuration", "features")
+        configuration, features = map(decode_fields, names, self._read(*names))
+        if bool(configuration["cached"]) != self._external:
             place = "in external memory" if configuration["cached"] else "on the chip"
             raise DeviceError(
                 f"{name}: the ray tracer has its octree {place}, and the block design does not; use rtl/vivado"
@@ -163,27 +168,27 @@ class RegisterDevice:
             capacity=words - (words - 1) % 8,
             depth=configuration["max_depth"],
             size=video.size,
-            features=frozenset(name for name in FEATURES if self._fields("features")[name]),
+            features=frozenset(name for name in FEATURES if features[name]),
             width_step=video.width_step,
             position_limit=1 << (configuration["position_bits"] - 1),
             pixel_seconds=pixel_seconds,
         )
         # The registers and the memory may still hold the scene of an earlier program: nothing of it may be traced.
         self.hold()
-        if self._external is not None:
-            self._write("memory_base", self._external.base)
-        if self._fields("features")["lod"]:
+        if memory.base is not None:
+            self._write("memory_base", memory.base)
+        if features["lod"]:
             self._write("lod", 0)
-        self.write_memory(0, np.array([EMPTY_LEAF], dtype=np.uint32))
+        self.write_memory(0, np.array([EMPTY], dtype=np.uint32))
         self.select_scene(0, 1)
 
     def registers(self) -> Mapping[str, int]:
         """Read all registers, by name, in the order of their addresses."""
-        return {name: self._read(name) for name in REGISTERS}
+        return dict(zip(REGISTERS, self._read(*REGISTERS), strict=True))
 
     def hold(self) -> None:
         """Let no frame start until :meth:`frame` is called, and wait until the present one ends."""
-        self._write("control", self._bits("control", "hold"))
+        self._write("control", _bits("control", "hold"))
         self._wait("busy", 0, "the present frame does not end")
 
     def write_memory(self, address: int, words: NDArray[np.uint32]) -> None:
@@ -191,7 +196,7 @@ class RegisterDevice:
         if self._stopped.is_set():
             raise DeviceError("the device was stopped")
         self._memory[address : address + len(words)] = words
-        self._caches_stale = self._external is not None
+        self._caches_stale = self._external
 
     def read_memory(self, address: int, count: int) -> NDArray[np.uint32]:
         """Read `count` words from word `address` on."""
@@ -200,42 +205,38 @@ class RegisterDevice:
     def write_materials(self, colours: NDArray[np.uint8], mirrors: NDArray[np.bool_], /) -> None:
         """Write the material table, while no frame can start."""
         self.hold()
-        self._write_all([(MATERIALS, material_rows(colours, mirrors))])
+        self._registers.write([(MATERIALS, material_rows(colours, mirrors))])
 
     def select_scene(self, root: int, depth: int) -> None:
         """Trace the octree at word `root` from the next frame on."""
         # The hardware latches depth and root together when a frame starts. None starts between these two writes.
         self.hold()
-        self._write("depth", depth)
-        self._write("root", root)
+        self._registers.write(register_writes("depth", depth=depth) + register_writes("root", address=root))
 
     def frame(self, view: View, seconds: float = math.inf, drop: FrameDrop | None = None) -> Frame:
         """Start a frame, wait for the frame-done bit, and return the frame."""
         started = time.perf_counter()
         columns, rows = view.size
-        self._write_all(register_writes("size", width=columns, height=rows))
-        self._write_all(camera_writes(view.camera) + lighting_writes(view.lighting))
         red, green, blue = view.background
-        self._registers.write(MATERIALS, red << 16 | green << 8 | blue)
-        self._write("status", self._bits("status", "frame_done", *PROBLEMS))  # writing 1 clears
+        writes = register_writes("size", width=columns, height=rows)
+        writes += camera_writes(view.camera) + lighting_writes(view.lighting)
+        writes += [(MATERIALS, [red << 16 | green << 8 | blue])]
+        writes += [(REGISTERS["status"][0], [_bits("status", "frame_done", *PROBLEMS)])]  # writing 1 clears
         if self._caches_stale:
-            self._write("control", self._bits("control", "hold", "flush"))
+            writes += register_writes("control", hold=1, flush=1)
             self._caches_stale = False
         self._video.expect(view.size)
-        self._write("control", self._bits("control", "start"))
+        self._registers.write(writes + register_writes("control", start=1))
         self._wait("frame_done", 1, "the frame does not end", seconds, drop)
-        problem = tell_problems(self._fields("status"))
-        if problem:
+        status, rays, words_read, cycles = self._read("status", "rays", "words_read", "cycles")
+        if problem := tell_problems(decode_fields("status", status)):
             raise DeviceError(problem)
         colour = np.ascontiguousarray(self._video.take()[..., _TO_RED_GREEN_BLUE])
         if colour.shape != (rows, columns, 3):
             raise DeviceError(
                 f"the frame has {colour.shape[1]}x{colour.shape[0]} pixels instead of {columns}x{rows}; try again"
             )
-        counters = Counters(
-            self._read("rays"), self._read("words_read"), self._read("cycles"), time.perf_counter() - started
-        )
-        return Frame(colour, counters)
+        return Frame(colour, Counters(rays, words_read, cycles, time.perf_counter() - started))
 
     def stop(self) -> None:
         """End the frame in progress; further frames and writes to the memory fail."""
@@ -245,15 +246,15 @@ class RegisterDevice:
         """Let no further frame start."""
         self.hold()
         self._video.close()
-        if self._external is not None:
-            self._external.close()
 
     def _wait(
         self, field: str, value: int, problem: str, seconds: float = math.inf, drop: FrameDrop | None = None
     ) -> None:
-        pixels, end, last = -1, 0.0, time.monotonic() + seconds
-        while self._fields("status")[field] != value:
-            before, pixels = pixels, self._read("rays")
+        before, end, last = -1, 0.0, time.monotonic() + seconds
+        while True:
+            status, pixels = self._read("status", "rays")
+            if decode_fields("status", status)[field] == value:
+                return
             now = time.monotonic()
             if self._stopped.is_set():
                 self._drop_frame()
@@ -265,7 +266,7 @@ class RegisterDevice:
                 self._drop_frame()
                 raise TooSlow(f"the frame took more than {seconds:.1f} s")
             if pixels != before:
-                end = now + _STUCK_SECONDS
+                before, end = pixels, now + _STUCK_SECONDS
             elif now > end:
                 self._drop_frame()
                 raise DeviceError(
@@ -274,21 +275,14 @@ class RegisterDevice:
             self._pause()
 
     def _drop_frame(self) -> None:
-        self._write("control", self._bits("control", "soft_reset", "hold"))
+        self._write("control", _bits("control", "soft_reset", "hold"))
 
-    def _read(self, name: str) -> int:
-        return int(self._registers.read(REGISTERS[name][0]))
+    def _read(self, *names: str) -> Sequence[int]:
+        return self._registers.read([REGISTERS[name][0] for name in names])
 
     def _write(self, name: str, value: int) -> None:
-        self._registers.write(REGISTERS[name][0], value)
+        self._registers.write([(REGISTERS[name][0], [value])])
 
-    def _write_all(self, writes: Writes) -> None:
-        for address, values in writes:
-            for number, value in enumerate(values):
-                self._registers.write(address + 4 * number, value)
 
-    def _fields(self, name: str) -> dict[str, int]:
-        return decode_fields(name, self._read(name))
-
-    def _bits(self, name: str, *fields: str) -> int:
-        return encode_fields(name, **dict.fromkeys(fields, 1))
+def _bits(name: str, *fields: str) -> int:
+    return encode_fields(name, **dict.fromkeys(fields, 1))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .registers import REGISTERS
+from voxrt.board.registers import REGISTERS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from .view import Camera, Lighting
+    from voxrt.board.view import Camera, Lighting
 
 _PROBLEMS = {
     "direction_overflow": "a direction overflow",

@@ -8,19 +8,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .errors import Refused
+from voxrt.board.errors import Refused
+from voxrt.octree import RomError, check_roots, decode
+from voxrt.octree.words import is_leaf
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-    from .view import Camera, Lighting, Triple
-
-MAX_DEPTH = 16
-
-EMPTY_LEAF = 0xFFFFFF00
-"""The word of empty space, report dialect."""
+    from voxrt.board.view import Camera, Lighting, Triple
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -77,25 +74,14 @@ def check_memory(words: NDArray[np.uint32], depth: int, roots: tuple[int, ...] =
     Raises
     ------
     Refused
-        A pointer leads out of the memory, to no block, or deeper than `depth` (as every cycle does), or a leaf is no
-        material tag of the report dialect. The message names the word.
+        As :func:`voxrt.octree.decode` and :func:`voxrt.octree.check_roots` say.
     """
-    if not 1 <= depth <= MAX_DEPTH:
-        raise Refused(f"a depth of {depth} is not 1 to {MAX_DEPTH}; build the scene again")
-    if len(words) % 8 != 1:
-        raise Refused(f"{len(words)} words are not a root and blocks of 8 words; build the scene again")
-    if not roots or not all(0 <= root < len(words) for root in roots):
-        raise Refused(f"a frame has its root outside of the {len(words)} words; build the scene again")
-    addresses = np.unique(np.array([0, *roots], dtype=np.int64))
-    for level in range(depth + 1):
-        reached = words[addresses]
-        is_pointer = reached >> 31 == 0
-        _refuse_any(addresses, ~is_pointer & (reached >> 8 != 0xFFFFFF), "is neither a pointer nor a material tag")
-        at, pointers = addresses[is_pointer], reached[is_pointer].astype(np.int64)
-        if level == depth:
-            _refuse_any(at, np.ones(len(at), dtype=bool), f"points deeper than {depth} levels")
-        _refuse_any(at, (pointers % 8 != 1) | (pointers + 8 > len(words)), "points to no block of the memory")
-        addresses = (np.unique(pointers)[:, None] + np.arange(8)).ravel()
+    try:
+        octree = decode(words, "report", depth)
+        if roots != (0,):
+            check_roots(octree, roots)
+    except RomError as error:
+        raise Refused(str(error)) from error
 
 
 def octree_span(words: NDArray[np.uint32], root: int, depth: int) -> tuple[int, int]:
@@ -115,7 +101,7 @@ def octree_span(words: NDArray[np.uint32], root: int, depth: int) -> tuple[int, 
     addresses, first, end = np.array([root]), 0, 1
     for _ in range(depth):
         reached = words[addresses[addresses < len(words)]]
-        pointers = np.unique(reached[reached >> 31 == 0]).astype(np.int64)
+        pointers = np.unique(reached[~is_leaf(reached)]).astype(np.int64)
         if len(pointers) == 0:
             break
         first = min(first or int(pointers[0]), int(pointers[0]))
@@ -134,13 +120,3 @@ def frame_period(times: Sequence[float | None]) -> float | None:
     """
     known = [float(time) for time in times if time is not None]
     return None if len(known) < max(2, len(times)) else (known[-1] - known[0]) / (len(known) - 1)
-
-
-def relocate(words: NDArray[np.uint32], base: int) -> NDArray[np.uint32]:
-    """Return the words of a memory for a root at word `base`, a multiple of 8."""
-    return np.where(words >> 31 == 0, words + np.uint32(base), words)
-
-
-def _refuse_any(addresses: NDArray[np.int64], wrong: NDArray[np.bool_], what: str) -> None:
-    if wrong.any():
-        raise Refused(f"word 0x{int(addresses[wrong][0]):X} {what}; build the scene again")

@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from .errors import DeviceError, Refused
-from .scene import EMPTY_LEAF, check_memory, relocate
+from voxrt.board.errors import DeviceError, Refused
+from voxrt.board.scene import check_memory
+from voxrt.octree.words import EMPTY, move_pointers
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from .device import Device
-    from .scene import Scene
+    from voxrt.board.device import Device
+    from voxrt.board.scene import Scene
 
 _BURST = 4096  # words per step, at least
 _STEPS = 256  # to write a scene, at most: a frame may come between two
@@ -157,7 +158,7 @@ class SceneMemory:
         return last if last >= self._base + len(self._loaded.words) else None
 
     def _transfer(self, scene: Scene, base: int, progress: Progress) -> Iterator[None]:
-        words = relocate(scene.words, base)
+        words = move_pointers(scene.words, base)
         burst = max(_BURST, -(-len(words) // _STEPS))
         for start in range(0, len(words), burst):
             progress("write", start, len(words))
@@ -210,7 +211,7 @@ class SceneMemory:
     def _restore(self, error: BaseException, *, overwritten: bool) -> None:
         try:
             if self._loaded is None:
-                self._device.write_memory(0, np.array([EMPTY_LEAF], dtype=np.uint32))
+                self._device.write_memory(0, np.array([EMPTY], dtype=np.uint32))
                 self._device.select_scene(0, 1)
                 return
             if overwritten:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..octree.camera import (
+from voxrt.octree.camera import (
     FACES,
     FEATURES,
     PLAIN_LIGHTING,

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .errors import Refused
+from voxrt.board.errors import Refused
+from voxrt.octree.camera import DIRECTION_LIMIT
 
 if TYPE_CHECKING:
-    from .device import Identity
-    from .view import View
-
-DIRECTION_LIMIT = 1 << 20
-"""Every component of a pixel's direction is smaller than this."""
+    from voxrt.board.device import Identity
+    from voxrt.board.view import View
 
 
 def check_view(view: View, identity: Identity) -> None:

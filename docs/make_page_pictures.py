@@ -29,19 +29,19 @@ sys.path.append(str(REPOSITORY / "tests"))
 from fakes.browser import chromium  # noqa: E402 - the tests' own browser
 
 
-async def serve(ready: threading.Event, finished: threading.Event, told: dict[str, str]) -> None:
+async def serve(ready: threading.Event, finished: threading.Event, address: dict[str, str]) -> None:
     """Serve until the pictures are taken."""
     scenes = {name: [path] for name, path in SCENES.items()}
     async with FrameServer(ModelDevice(), SceneLibrary(asset_reader(DEPTH), scenes), ServerOptions()) as server:
-        told["url"] = server.url
+        address["url"] = server.url
         ready.set()
         await asyncio.to_thread(finished.wait)
 
 
 def main() -> None:
     """Take all pictures."""
-    ready, finished, told = threading.Event(), threading.Event(), {}
-    serving = threading.Thread(target=lambda: asyncio.run(serve(ready, finished, told)))
+    ready, finished, address = threading.Event(), threading.Event(), {}
+    serving = threading.Thread(target=lambda: asyncio.run(serve(ready, finished, address)))
     serving.start()
     ready.wait()
     try:
@@ -49,7 +49,7 @@ def main() -> None:
             with chromium() as browser:
                 browser.screen(*size, touch=not dark, ratio=1 if dark else 2)
                 browser.theme(dark=dark)
-                browser.open(told["url"])
+                browser.open(address["url"])
                 browser.until(f"!document.querySelector('[data-scene={scene}]').disabled")
                 browser.run("document.querySelector(arguments[0]).click()", f"[data-scene={scene}]")
                 browser.until(f"document.querySelector('#scene').innerText === '{scene}'")

@@ -29,8 +29,6 @@ PACKAGES = (
     "voxrt.board",
     "voxrt.serve",
 )
-OPTIONAL = frozenset({"pynq"})
-"""Packages that only a board has: a module that needs one of them is left out where it is missing."""
 
 
 def exports(package: str) -> list[str]:
@@ -50,16 +48,8 @@ def exports(package: str) -> list[str]:
 def _modules(module: ModuleType) -> list[ModuleType]:
     if not hasattr(module, "__path__"):
         return [module]
-    found = []
-    for info in pkgutil.walk_packages(module.__path__, f"{module.__name__}."):
-        if any(part.startswith("_") for part in info.name.split(".")):
-            continue
-        try:
-            found.append(import_module(info.name))
-        except ModuleNotFoundError as error:
-            if error.name not in OPTIONAL:
-                raise
-    return found
+    names = [info.name for info in pkgutil.walk_packages(module.__path__, f"{module.__name__}.")]
+    return [import_module(name) for name in names if not any(part.startswith("_") for part in name.split("."))]
 
 
 def _own_names(module: ModuleType) -> list[str]:

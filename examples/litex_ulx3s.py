@@ -102,9 +102,9 @@ def main() -> None:
     parser.add_argument("verilog", type=Path, help="the core, of voxrt core --verilog")
     parser.add_argument("--build", action="store_true", help="synthesize, place and route")
     parser.add_argument("--output", type=Path, default=Path("build/litex"))
-    given = parser.parse_args()
-    builder = Builder(Design(given.verilog), output_dir=str(given.output), compile_software=False)
-    builder.build(run=given.build)
+    options = parser.parse_args()
+    builder = Builder(Design(options.verilog), output_dir=str(options.output), compile_software=False)
+    builder.build(run=options.build)
 
 
 if __name__ == "__main__":

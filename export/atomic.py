@@ -33,12 +33,7 @@ def write_atomically(path: Path, data: bytes | Iterable[bytes]) -> None:
     """Write `data` to `path` so that an interruption at any moment leaves the old file or the new.
 
     A file that is replaced keeps its mode. A link is followed. What is no regular file, such as a pipe, is written to
-    as it is.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written; the old one is then untouched and nothing new stays.
+    as it is. After an OSError the old file is untouched and nothing new stays.
     """
     write_together({path: data})
 
@@ -80,13 +75,7 @@ def write_together(files: Mapping[Path, bytes | Iterable[bytes] | None]) -> None
 
 @contextmanager
 def new_folder(folder: Path) -> Iterator[None]:
-    """Make a folder and those above it, and remove again what was made if the block fails.
-
-    Raises
-    ------
-    OSError
-        The folder cannot be made.
-    """
+    """Make a folder and those above it; OSError where that fails. Remove what was made if the block fails."""
     missing = []
     while not folder.exists() and folder != folder.parent:
         missing.append(folder)

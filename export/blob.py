@@ -125,9 +125,9 @@ def blob_bytes(blob: Blob) -> bytes:
     if blob.animation:
         frames = blob.animation.frames
         sections[b"FRMS"] = struct.pack("<I4x", len(frames)) + b"".join(_pack_frame(frame) for frame in frames)
-    told = msgspec.structs.replace(blob.provenance, seconds={})
-    if told != Provenance():
-        sections[b"PROV"] = msgspec.json.encode(told)
+    origin = msgspec.structs.replace(blob.provenance, seconds={})
+    if origin != Provenance():
+        sections[b"PROV"] = msgspec.json.encode(origin)
     offset = _HEADER.size + _ENTRY.size * len(sections)
     table, body = b"", b""
     for name, data in sections.items():

@@ -33,25 +33,12 @@ def coe_bytes(words: NDArray[np.uint32]) -> bytes:
 
 
 def write_coe(path: Path, words: NDArray[np.uint32]) -> None:
-    """Write words as a ``.coe`` file. An interruption leaves the old file or the new one.
-
-    Parameters
-    ----------
-    path
-        The file.
-    words
-        uint32, shape (N,), in the dialect of their reader: :func:`voxrt.octree.encode`.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
+    """Write words as a ``.coe`` file; parameters and errors are those of :func:`write_mem`.
 
     Examples
     --------
     >>> from pathlib import Path
-    >>> from voxrt.octree import from_points
-    >>> write_coe(Path("dot.coe"), from_points([[1, 2, 3]], [7], depth=2).words)
+    >>> write_coe(Path("dot.coe"), np.array([1, *[0xFFFFFF07] * 8], np.uint32))
     """
     write_atomically(path, coe_bytes(words))
 
@@ -67,10 +54,9 @@ def read_coe(path: Path) -> WordFile:
     Examples
     --------
     >>> from pathlib import Path
-    >>> from voxrt.octree import from_points
-    >>> write_coe(Path("dot.coe"), from_points([[1, 2, 3]], [7], depth=2).words)
+    >>> write_coe(Path("dot.coe"), np.array([1, *[0xFFFFFF07] * 8], np.uint32))
     >>> len(read_coe(Path("dot.coe")).words)
-    17
+    9
     """
     text = _COMMENT.sub(b"", read_bytes(path))
     radix_statement = _RADIX.match(text)

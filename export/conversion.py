@@ -133,20 +133,20 @@ def convert(blob: Blob, target: Path | str, *, dialect: str = "report") -> tuple
     if suffix not in WORD_SUFFIXES:
         raise RomError(f"{target}: is not a format to write; name one of {', '.join(WRITABLE_SUFFIXES)}")
     blob = _with_known_provenance(blob, target, dialect)
-    told = blob.provenance
+    known = blob.provenance
     files = write_rom(
         target.parent,
         replace(blob.rom, name=target.stem),
         stem=target.stem,
         suffix=target.suffix,
         dialect=dialect,
-        objects=told.objects,
-        warnings=told.warnings,
-        seconds=told.seconds,
-        source=told.source,
+        objects=known.objects,
+        warnings=known.warnings,
+        seconds=known.seconds,
+        source=known.source,
         view=blob.view,
         lighting=blob.lighting,
-        baked=told.baked,
+        baked=known.baked,
         animation=blob.animation,
     )
     return files.mem, files.manifest

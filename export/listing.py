@@ -19,6 +19,7 @@ import numpy as np
 
 from voxrt.export.word_file import read_bytes
 from voxrt.octree import Octree, Rom, RomError, decode, share
+from voxrt.octree.words import leaf
 from voxrt.voxelize import DEFAULT_COLOUR, EMPTY, MATERIAL_LIMIT, Material
 
 if TYPE_CHECKING:
@@ -31,7 +32,6 @@ _LINE = re.compile(
     r"\s*Node (\d{1,9}): Material ID = (.+?), MID1 = (True|False)(?:, First Child Index = (\d{1,9}))?\s*"
 )
 _INSTANCE = " (Instance)"
-_LEAF = 0xFFFFFF00
 _LEAF_NODE = -1
 
 
@@ -117,7 +117,7 @@ def _octree(
     if len(wrong) or len(leaves) % 8 != 1:
         where = f"line {lines[wrong[0]]}: eight children are not there" if len(wrong) else "the last nodes are missing"
         raise RomError(f"{path}: {where}; the listing is cut short or damaged")
-    words = np.where(parents, first_children, _LEAF | leaves).astype(np.uint32)
+    words = np.where(parents, first_children, leaf(leaves.astype(np.uint32))).astype(np.uint32)
     # The listing has x = 4, z = 1; a block has x = 1, z = 4.
     order = [0, 4, 2, 6, 1, 5, 3, 7]
     words[1:] = words[1:].reshape(-1, 8)[:, order].ravel()

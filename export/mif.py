@@ -37,25 +37,12 @@ def mif_bytes(words: NDArray[np.uint32]) -> bytes:
 
 
 def write_mif(path: Path, words: NDArray[np.uint32]) -> None:
-    """Write words as a ``.mif`` file. An interruption leaves the old file or the new one.
-
-    Parameters
-    ----------
-    path
-        The file.
-    words
-        uint32, shape (N,), in the dialect of their reader: :func:`voxrt.octree.encode`.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
+    """Write words as a ``.mif`` file; parameters and errors are those of :func:`write_mem`.
 
     Examples
     --------
     >>> from pathlib import Path
-    >>> from voxrt.octree import from_points
-    >>> write_mif(Path("dot.mif"), from_points([[1, 2, 3]], [7], depth=2).words)
+    >>> write_mif(Path("dot.mif"), np.array([1, *[0xFFFFFF07] * 8], np.uint32))
     """
     write_atomically(path, mif_bytes(words))
 
@@ -71,10 +58,9 @@ def read_mif(path: Path) -> WordFile:
     Examples
     --------
     >>> from pathlib import Path
-    >>> from voxrt.octree import from_points
-    >>> write_mif(Path("dot.mif"), from_points([[1, 2, 3]], [7], depth=2).words)
+    >>> write_mif(Path("dot.mif"), np.array([1, *[0xFFFFFF07] * 8], np.uint32))
     >>> len(read_mif(Path("dot.mif")).words)
-    17
+    9
     """
     data = read_bytes(path)
     if _BINARY_LINES.match(data):

@@ -28,25 +28,12 @@ def raw_bytes(words: NDArray[np.uint32]) -> Iterator[bytes]:
 
 
 def write_raw(path: Path, words: NDArray[np.uint32]) -> None:
-    """Write words as a ``.bin`` file. An interruption leaves the old file or the new one.
-
-    Parameters
-    ----------
-    path
-        The file.
-    words
-        uint32, shape (N,), in the dialect of their reader: :func:`voxrt.octree.encode`.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
+    """Write words as a ``.bin`` file; parameters and errors are those of :func:`write_mem`.
 
     Examples
     --------
     >>> from pathlib import Path
-    >>> from voxrt.octree import from_points
-    >>> write_raw(Path("dot.bin"), from_points([[1, 2, 3]], [7], depth=2).words)
+    >>> write_raw(Path("dot.bin"), np.array([1, *[0xFFFFFF07] * 8], np.uint32))
     """
     write_atomically(path, raw_bytes(words))
 
@@ -64,10 +51,9 @@ def read_raw(path: Path) -> WordFile:
     Examples
     --------
     >>> from pathlib import Path
-    >>> from voxrt.octree import from_points
-    >>> write_raw(Path("dot.bin"), from_points([[1, 2, 3]], [7], depth=2).words)
+    >>> write_raw(Path("dot.bin"), np.array([1, *[0xFFFFFF07] * 8], np.uint32))
     >>> len(read_raw(Path("dot.bin")).words)
-    17
+    9
     """
     data = mapped_bytes(path)
     if len(data) % 4:

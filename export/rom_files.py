@@ -218,10 +218,10 @@ def read_words(
     if manifest is None:
         rom, warnings = _without_manifest(mem_path, mem, depth, dialect)
         return Blob(rom), warnings
-    for name, said, wanted in (("depth", manifest.depth, depth), ("dialect", manifest.dialect, dialect)):
-        if wanted is not None and wanted != said:
+    for name, recorded, wanted in (("depth", manifest.depth, depth), ("dialect", manifest.dialect, dialect)):
+        if wanted is not None and wanted != recorded:
             raise RomError(
-                f"{mem_path}: the manifest says {name} {said}, and {wanted} was asked for; leave --{name} out"
+                f"{mem_path}: the manifest says {name} {recorded}, and {wanted} was asked for; leave --{name} out"
             )
     octree = decode(mem.words, manifest.dialect, manifest.depth, source=str(mem_path), lines=mem.lines)
     animation = manifest.animation

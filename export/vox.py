@@ -144,9 +144,9 @@ def _numbers(models: list[tuple[NDArray[np.uint8], NDArray[np.int64]]]) -> bytes
 
 
 def _transform(node: int, child: int, frame: dict[str, str] | None = None) -> bytes:
-    said = b"".join(_text(key) + _text(value) for key, value in (frame or {}).items())
+    attributes = b"".join(_text(key) + _text(value) for key, value in (frame or {}).items())
     head = struct.pack("<iiiiii", node, 0, child, -1, -1, 1)
-    return _chunk(b"nTRN", head + struct.pack("<i", len(frame or {})) + said)
+    return _chunk(b"nTRN", head + struct.pack("<i", len(frame or {})) + attributes)
 
 
 def _text(text: str) -> bytes:

@@ -23,13 +23,7 @@ _NAMES = {".mem": "mem", ".coe": "coe", ".mif": "mif", ".bin": "raw"}
 
 
 def read_word_file(path: Path) -> WordFile:
-    """Read a file of words, by its suffix.
-
-    Raises
-    ------
-    RomError
-        The file cannot be read or is damaged.
-    """
+    """Read a file of words, by its suffix; RomError where it cannot be read or is damaged."""
     name = _NAMES[path.suffix.lower()]
     found: WordFile = getattr(import_module(f"voxrt.export.{name}"), f"read_{name}")(path)
     return found

@@ -16,6 +16,7 @@ from voxrt.octree import _native
 from voxrt.octree.errors import RomError
 from voxrt.octree.octree import MAX_DEPTH, Octree
 from voxrt.octree.statistics import census
+from voxrt.octree.words import EMPTY, is_leaf, move_pointers
 from voxrt.voxelize import DoesNotFitError
 from voxrt.voxelize.arguments import instance, real, text, whole
 
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-_EMPTY = 0xFFFFFF00
 _HIGHEST = (1 << 31) - 1
 
 
@@ -278,6 +278,8 @@ def check_roots(octree: Octree, roots: Sequence[int], *, source: str = "") -> in
     """
     label = source or "memory"
     words, levels = octree.words, _levels(len(roots))
+    if not roots:
+        raise RomError(f"{label}: it has no frame; build it again")
     for row, root in enumerate(roots):
         if not 0 <= root < len(words):
             raise RomError(f"{label}: frame {row} has its root at word {root} of {len(words)}; build it again")
@@ -305,9 +307,9 @@ def _join_group(groups: list[list[Octree]], level: int) -> None:
         raise DoesNotFitError(
             f"so many frames of depth {depth - level} do not fit one memory; build fewer frames, or with less depth"
         )
-    parts, roots, start = [np.array([_EMPTY], np.uint32)], [], 0
+    parts, roots, start = [np.array([EMPTY], np.uint32)], [], 0
     for octree in group:
-        moved = np.where(octree.words >> 31 == 0, octree.words + np.uint32(start), octree.words)
+        moved = move_pointers(octree.words, start)
         roots.append(moved[0])
         parts.append(moved[1:])
         start += len(moved) - 1
@@ -327,7 +329,7 @@ def _with_table(words: NDArray[np.uint32], roots: NDArray[np.uint32], levels: in
     """Return a memory with the octree above some roots behind its blocks; word 0 becomes its root."""
     parts, end = [words], len(words)
     for _ in range(levels):
-        table = np.full(-(-len(roots) // 8) * 8, _EMPTY, np.uint32)
+        table = np.full(-(-len(roots) // 8) * 8, EMPTY, np.uint32)
         table[: len(roots)] = roots
         parts.append(table)
         roots = np.arange(end, end + len(table), 8, dtype=np.uint32)
@@ -343,7 +345,7 @@ def _addresses(words: NDArray[np.uint32], levels: int, count: int) -> tuple[int,
     for number in range(count):
         address = 0
         for level in reversed(range(levels)):
-            if words[address] >> 31:
+            if is_leaf(int(words[address])):
                 break
             address = int(words[address]) + (number >> 3 * level & 7)
         found.append(address)

@@ -204,10 +204,10 @@ def _candidates(shared: Octree, words: int, colours: NDArray[np.uint8]) -> list[
     return [Octree(shared.depth, one) for one in found]
 
 
-def _colours(given: NDArray[np.uint8] | None) -> NDArray[np.uint8]:
-    if given is None:
+def _colours(rows: NDArray[np.uint8] | None) -> NDArray[np.uint8]:
+    if rows is None:
         return np.zeros((0, 3), np.uint8)
-    colours = whole_array("colours", given, ("M", 3), np.uint8, low=0, high=255)
+    colours = whole_array("colours", rows, ("M", 3), np.uint8, low=0, high=255)
     if len(colours) > 256:
         raise ValueError(f"colours must have shape (M, 3), M at most 256, not {colours.shape}")
     return np.ascontiguousarray(colours)

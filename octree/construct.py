@@ -93,12 +93,12 @@ def from_dense(materials: ArrayLike) -> Octree:
     >>> from_dense(world)
     <Octree: depth 3, 25 words>
     """
-    given = np.asarray(materials)
-    if given.ndim == 3 and max(given.shape) > 1 << MAX_DEPTH:
+    array = np.asarray(materials)
+    if array.ndim == 3 and max(array.shape) > 1 << MAX_DEPTH:
         raise DoesNotFitError(
-            f"{max(given.shape)} voxels per side do not fit depth {MAX_DEPTH}; cut the array into parts"
+            f"{max(array.shape)} voxels per side do not fit depth {MAX_DEPTH}; cut the array into parts"
         )
-    cells = whole_array("materials", given, ("X", "Y", "Z"), np.uint8, low=0, high=255)
+    cells = whole_array("materials", array, ("X", "Y", "Z"), np.uint8, low=0, high=255)
     if cells.size == 0:
         raise ValueError(f"materials must hold a voxel, and its shape is {cells.shape}")
     depth = max(1, (max(cells.shape) - 1).bit_length())

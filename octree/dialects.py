@@ -1,26 +1,28 @@
-"""The words that mark a leaf, as three generations of hardware read them.
-
-============ ==================== ====================================================
-dialect      leaf of material m   read by
-============ ==================== ====================================================
-``report``   ``0xFFFFFF00 | m``   this project's hardware; the report of the original
-``seed-rtl`` ``0xFFFFFFF0 | m``   the original's published bitstreams: the low 3 bits
-                                  count, so FFFFFF00 … FFFFFF07 are read as well
-``msb``      ``0x80000000 | m``   the C++ program of the original's report
-``lod``      ``0xFFFFFF00 | m``   configurations of this project's hardware with level of detail
-============ ==================== ====================================================
-
-Pointers are the same in the first three: bit 31 clear, the word address of octant 0 of a block. In ``lod`` a pointer is
-256 times the number of the block, plus its mean material; block k is at address 1 + 8 k.
-"""
+"""Octree memories in the words of other hardware: written, read, and told apart."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from voxrt.octree.errors import RomError, place
+from voxrt.octree.words import (
+    DIALECTS,
+    LOD_BLOCKS,
+    SEED_MATERIALS,
+    TAGS,
+    Dialect,
+    from_lod_words,
+    is_leaf,
+    is_leaf_of,
+    leaf,
+    lod_pointers,
+    lod_words,
+    material,
+    with_tag,
+    without_tag,
+)
 from voxrt.voxelize import DoesNotFitError
 
 if TYPE_CHECKING:
@@ -28,18 +30,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-Dialect: TypeAlias = Literal["report", "seed-rtl", "msb", "lod"]
-DIALECTS: tuple[Dialect, ...] = get_args(Dialect)
-
-_LEAF = np.uint32(0x80000000)
 _PIECE = 1 << 20  # words looked at at a time
-_TAGS: dict[Dialect, np.uint32] = {
-    "report": np.uint32(0xFFFFFF00),
-    "seed-rtl": np.uint32(0xFFFFFFF0),
-    "msb": np.uint32(0x80000000),
-    "lod": np.uint32(0xFFFFFF00),
-}
-_LOD_BLOCKS = (1 << 24) - 1
 
 
 def as_dialect(name: str) -> Dialect:
@@ -79,112 +70,69 @@ def encode(words: NDArray[np.uint32], dialect: str, means: NDArray[np.uint8] | N
     >>> [hex(word) for word in encode(np.array([1, 0xFFFFFF02], np.uint32), "msb")]
     ['0x1', '0x80000002']
     """
-    tag = _TAGS[as_dialect(dialect)]
-    if dialect == "report":
+    target = as_dialect(dialect)
+    if target == "report":
         return words
-    leaves = (words & _LEAF) != 0
-    if dialect == "lod":
+    if target == "lod":
         if means is None:
             raise ValueError("the memory has no mean materials: give it some with with_means")
-        if len(means) > _LOD_BLOCKS:
+        if len(means) > LOD_BLOCKS:
             raise DoesNotFitError(
-                f"dialect lod holds {_LOD_BLOCKS:,} blocks and the memory has {len(means):,}; build with less depth"
+                f"dialect lod holds {LOD_BLOCKS:,} blocks and the memory has {len(means):,}; build with less depth"
             )
-        if len(means) == 0:
-            return words
-        blocks = np.where(leaves, 0, words) >> np.uint32(3)
-        return np.where(leaves, words, blocks << np.uint32(8) | means[blocks])
-    materials = words & np.uint32(0xFF)
-    if dialect == "seed-rtl":
-        highest = int(materials[leaves].max(initial=0))
-        if highest > 7:
+        return lod_words(words, means) if len(means) else words
+    leaves = is_leaf(words)
+    if target == "seed-rtl":
+        highest = int(material(words)[leaves].max(initial=0))
+        if highest > SEED_MATERIALS:
             raise DoesNotFitError(
-                f"dialect seed-rtl holds materials 1 ... 7 and the memory uses material {highest}; "
+                f"dialect seed-rtl holds materials 1 ... {SEED_MATERIALS} and the memory uses material {highest}; "
                 "write dialect report, or build with fewer materials"
             )
-    return np.where(leaves, tag | materials, words)
+    return np.where(leaves, with_tag(words, target), words)
 
 
 def leaf_materials(
     words: NDArray[np.uint32], dialect: str, *, source: str = "", lines: Sequence[int] | NDArray[np.int64] | None = None
 ) -> NDArray[np.uint32]:
-    """Read the words of `dialect` as report words, pointers unchecked.
+    """Read the words of `dialect` (uint32, shape (N,)) as report words, pointers unchecked.
 
-    Parameters
-    ----------
-    words
-        uint32, shape (N,).
-    dialect
-        One of :data:`DIALECTS`.
-    source, lines
-        The file that the words come from and the line of each, for the error.
-
-    Returns
-    -------
-    NDArray[np.uint32]
-        uint32, shape (N,), report dialect.
-
-    Raises
-    ------
-    RomError
-        A word is neither a pointer nor a leaf of that dialect.
+    RomError, which names a line of `source`, where a word is neither a pointer nor a leaf of that dialect.
     """
-    if dialect == "lod":
-        leaves = _lod_leaves(words)
-        pointers = 8 * (words >> np.uint32(8)).astype(np.uint64) + 1
-        # What leads beyond the memory stays so; what is beyond bit 31 would be no pointer at all.
-        return np.where(leaves, words, np.minimum(pointers, 0x7FFFFFF9).astype(np.uint32))
-    leaves = (words & _LEAF) != 0
-    known = ~leaves | _leaf_words(words)[as_dialect(dialect)]
+    origin = as_dialect(dialect)
+    if origin == "lod":
+        return from_lod_words(words)
+    leaves = is_leaf(words)
+    known = ~leaves | is_leaf_of(words, origin)
     if not known.all():
         address = int(np.argmin(known))
         raise RomError(
             f"{place(address, source, lines)}: {int(words[address]):08X} is neither a pointer nor a leaf of dialect "
             f"{dialect}; name the dialect that the memory was written in ({', '.join(DIALECTS)})"
         )
-    materials = words & np.uint32(0x07 if dialect == "seed-rtl" else 0xFF)
-    return np.where(leaves, _TAGS["report"] | materials, words)
+    return np.where(leaves, without_tag(words, origin), words)
 
 
 def block_means(
     words: NDArray[np.uint32], *, source: str = "", lines: Sequence[int] | NDArray[np.int64] | None = None
 ) -> NDArray[np.uint8]:
-    """Read the mean material of each block of a memory of dialect ``lod``.
+    """Read the mean material of each block of a memory of dialect ``lod``, all of whose pointers lead into it.
 
-    Parameters
-    ----------
-    words
-        uint32, shape (1 + 8 * blocks,); every pointer leads into the memory.
-    source, lines
-        The file that the words come from and the line of each, for the error.
-
-    Returns
-    -------
-    NDArray[np.uint8]
-        uint8, shape (blocks,), read-only; 0 for a block that nothing points to.
-
-    Raises
-    ------
-    RomError
-        Two pointers to one block have different means.
+    Return uint8, shape (blocks,), read-only; 0 for a block that nothing points to. RomError, which names a line of
+    `source`, where two pointers to one block have different means.
     """
-    pointers = np.flatnonzero(~_lod_leaves(words))
-    blocks, materials = words[pointers] >> np.uint32(8), (words[pointers] & np.uint32(0xFF)).astype(np.uint8)
+    pointers = np.flatnonzero(~is_leaf_of(words, "lod"))
+    blocks, materials = lod_pointers(words[pointers])
     means = np.zeros((len(words) - 1) // 8, np.uint8)
     means[blocks] = materials
     if len(wrong := np.flatnonzero(means[blocks] != materials)):
         address = int(pointers[wrong[0]])
         raise RomError(
-            f"{place(address, source, lines)}: {int(words[address]):08X} gives block {int(words[address]) >> 8} "
+            f"{place(address, source, lines)}: {int(words[address]):08X} gives block {blocks[wrong[0]]} "
             "another mean material than a later word does; build it again"
         )
     means.flags.writeable = False
     return means
-
-
-def _lod_leaves(words: NDArray[np.uint32]) -> NDArray[np.bool_]:
-    leaves: NDArray[np.bool_] = (words >> np.uint32(8)) == np.uint32(0xFFFFFF)
-    return leaves
 
 
 def detect_dialect(
@@ -226,9 +174,9 @@ def _different_leaves(words: NDArray[np.uint32]) -> NDArray[np.uint32]:
     found = [np.zeros(0, np.uint32)]
     for first in range(0, len(words), _PIECE):
         piece = words[first : first + _PIECE]
-        leaves = piece[(piece & _LEAF) != 0]
-        tagged = leaves >= _TAGS["report"]
-        found.append(_TAGS["report"] | np.flatnonzero(np.bincount(leaves[tagged] & np.uint32(0xFF))).astype(np.uint32))
+        leaves = piece[is_leaf(piece)]
+        tagged = is_leaf_of(leaves, "report")
+        found.append(leaf(np.flatnonzero(np.bincount(material(leaves[tagged]))).astype(np.uint32)))
         found.append(np.unique(leaves[~tagged]))
     return np.unique(np.concatenate(found))
 
@@ -236,35 +184,24 @@ def _different_leaves(words: NDArray[np.uint32]) -> NDArray[np.uint32]:
 def _dialect_of(
     words: NDArray[np.uint32], source: str = "", lines: Sequence[int] | NDArray[np.int64] | None = None
 ) -> Dialect:
-    leaves = (words & _LEAF) != 0
-    masks = _leaf_words(words)
-    if masks["msb"][leaves].all() and leaves.any():
+    leaves = is_leaf(words)
+    if leaves.any() and is_leaf_of(words[leaves], "msb").all():
         return "msb"
-    if not masks["report"][leaves].all():
-        address = int(np.argmax(leaves & ~masks["report"]))
+    report = is_leaf_of(words, "report")
+    if not report[leaves].all():
+        address = int(np.argmax(leaves & ~report))
         raise RomError(
             f"{place(address, source, lines)}: {int(words[address]):08X} and the other leaves of the memory fit no "
             f"dialect ({', '.join(DIALECTS)}); check that the file is an octree memory"
         )
-    high = leaves & ((words & np.uint32(0xF8)) == np.uint32(0xF0))
-    if not masks["seed-rtl"][leaves].all() or not high.any():
+    high = leaves & (material(words) >= material(TAGS["seed-rtl"])) & is_leaf_of(words, "seed-rtl")
+    if not is_leaf_of(words[leaves], "seed-rtl").all() or not high.any():
         return "report"
-    if (words[high] == _TAGS["seed-rtl"]).any():
+    if (words[high] == TAGS["seed-rtl"]).any():
         return "seed-rtl"
     address = int(np.argmax(high))
     word = int(words[address])
     raise RomError(
-        f"{place(address, source, lines)}: {word:08X} is material {word & 0xFF} in dialect report and {word & 7} in "
-        "dialect seed-rtl, and nothing else in the memory tells which; name the dialect"
+        f"{place(address, source, lines)}: {word:08X} is material {material(word)} in dialect report and "
+        f"{word & SEED_MATERIALS} in dialect seed-rtl, and nothing else in the memory tells which; name the dialect"
     )
-
-
-def _leaf_words(words: NDArray[np.uint32]) -> dict[Dialect, NDArray[np.bool_]]:
-    report = (words & np.uint32(0xFFFFFF00)) == np.uint32(0xFFFFFF00)
-    seed = report & ((words & np.uint32(0x08)) == 0) & np.isin(words & np.uint32(0xF0), (0x00, 0xF0))
-    return {
-        "report": report,
-        "seed-rtl": seed,
-        "lod": report,
-        "msb": (words & np.uint32(0xFFFFFF00)) == np.uint32(0x80000000),
-    }

@@ -79,7 +79,7 @@ def diff(first: Octree, second: Octree) -> Difference:
     >>> diff(before, from_points([[1, 2, 3], [0, 0, 0]], [6, 1], depth=2))
     Difference(appeared=1, vanished=0, recoloured=1, bounds=((0, 0, 0), (2, 3, 4)))
     """
-    _refuse_other_depth(first, second)
+    refuse_other_depth(first, second)
     found = _native.diff(first.words, second.words, first.depth)
     return Difference(found.appeared, found.vanished, found.recoloured, as_bounds(found.bounds))
 
@@ -106,7 +106,7 @@ def differing_regions(first: Octree, second: Octree) -> tuple[Region, ...]:
     >>> [region.bounds for region in differing_regions(before, from_points([[7, 7, 7]], [7], depth=3))]
     [((1, 2, 3), (2, 3, 4)), ((7, 7, 7), (8, 8, 8))]
     """
-    _refuse_other_depth(first, second)
+    refuse_other_depth(first, second)
     found = _native.differing_regions(first.words, second.words, first.depth)
     return tuple(
         Region(((x, y, z), (end_x, end_y, end_z)), appeared, vanished, recoloured)
@@ -121,7 +121,8 @@ def differing_regions(first: Octree, second: Octree) -> tuple[Region, ...]:
     )
 
 
-def _refuse_other_depth(first: Octree, second: Octree) -> None:
+def refuse_other_depth(first: Octree, second: Octree) -> None:
+    """Raise TypeError or ValueError unless both are octrees of one depth."""
     instance("first", first, Octree)
     if first.depth != instance("second", second, Octree).depth:
         raise ValueError(f"octrees of depth {first.depth} and {second.depth} cannot be compared voxel by voxel")

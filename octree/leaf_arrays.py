@@ -96,18 +96,7 @@ def _chunks(walk: _native.LeafWalk, chunk: int) -> Iterator[Leaves]:
 def solid_leaves(octree: Octree, low: Corner = (0, 0, 0), high: Corner | None = None) -> Leaves:
     """Return all solid leaves that overlap a box at once, as :func:`leaves` yields them.
 
-    Raises
-    ------
-    TypeError, ValueError
-        A corner is not three integers, or `high` lies below `low`.
-    DoesNotFitError
-        More than :data:`LEAF_LIMIT`.
-
-    Examples
-    --------
-    >>> from voxrt.octree import from_points
-    >>> solid_leaves(from_points([[1, 2, 3], [0, 0, 0]], [7, 7], depth=2)).corners.tolist()
-    [[0, 0, 0], [1, 2, 3]]
+    DoesNotFitError for more than :data:`LEAF_LIMIT`; TypeError or ValueError where a corner is none.
     """
     chunks, count = [Leaves(np.zeros((0, 3), np.int32), np.zeros(0, np.uint8), np.zeros(0, np.uint8))], 0
     for chunk in leaves(octree, low, high, solid_only=True):

@@ -9,6 +9,7 @@ import numpy as np
 
 from voxrt.octree.octree import Octree
 from voxrt.octree.query import as_corner
+from voxrt.octree.words import is_leaf, material
 from voxrt.voxelize.arguments import instance
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ class Octant:
     @property
     def material(self) -> int:
         """Material id, 0 for empty space."""
-        return self.word & 0xFF
+        return material(self.word)
 
     @property
     def end(self) -> Corner:
@@ -79,7 +80,7 @@ def octant_at(octree: Octree, voxel: Corner) -> Octant:
         raise ValueError(f"voxel {x},{y},{z} lies outside the world of {octree.size} voxels per side")
     address, level = 0, octree.depth
     word = int(octree.words[0])
-    while not word >> 31:
+    while not is_leaf(word):
         level -= 1
         address = word + (x >> level & 1) + 2 * (y >> level & 1) + 4 * (z >> level & 1)
         word = int(octree.words[address])

@@ -1,8 +1,6 @@
 """The octree as the hardware sees it: memory words in the report dialect.
 
-Word 0 is the root. A word with bit 31 clear is a pointer, the word address of octant 0 of a block of 8; a word
-``0xFFFFFFmm`` is a leaf of material mm (0 = empty). Octant index = {z, y, x}. Blocks stand at 1 + 8k, breadth-first by
-first visit; equal blocks are stored once.
+:mod:`voxrt.octree.words` defines words. Blocks stand breadth-first by first visit; equal blocks are stored once.
 """
 
 from __future__ import annotations

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from voxrt.octree import _native
-from voxrt.octree.octree import Octree
-from voxrt.voxelize.arguments import instance
+from voxrt.octree.difference import refuse_other_depth
+
+if TYPE_CHECKING:
+    from voxrt.octree.octree import Octree
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,8 +50,6 @@ def surface_change(first: Octree, second: Octree) -> SurfaceChange:
     >>> surface_change(before, from_points([[1, 2, 3]], [7], depth=2)).percent
     50.0
     """
-    instance("first", first, Octree)
-    if first.depth != instance("second", second, Octree).depth:
-        raise ValueError(f"octrees of depth {first.depth} and {second.depth} cannot be compared voxel by voxel")
+    refuse_other_depth(first, second)
     found = _native.surface_change(first.words, second.words, first.depth)
     return SurfaceChange(surface=found.surface, changed=found.changed)

@@ -16,7 +16,6 @@ from systemrdl.node import AddrmapNode, MemNode, RegNode
 
 RTL = Path(__file__).resolve().parent
 SOURCE = RTL / "registers.rdl"
-BOARD = RTL.parent / "board"
 GENERATED = RTL / "generated"
 
 
@@ -147,9 +146,7 @@ def main() -> None:
             manual += [f"## 0x{node.absolute_address:03X} {name}, {node.get_property('mementries')} words", ""]
             manual += [description, ""]
     python += ["}", f"MATERIALS = 0x{top.find_by_path('materials').absolute_address:03X}", ""]
-    # The board's room installs alone, so it holds a copy of its own.
-    for place in (GENERATED / "voxrt_registers.py", BOARD / "registers.py"):
-        place.write_text("\n".join(python))
+    (GENERATED / "voxrt_registers.py").write_text("\n".join(python))
     (GENERATED / "registers.md").write_text("\n".join(manual))
 
 

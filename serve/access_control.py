@@ -7,7 +7,7 @@ import ipaddress
 from dataclasses import dataclass
 from urllib.parse import parse_qs, urlsplit
 
-from .shown_text import shown_line
+from voxrt.serve.shown_text import shown_line
 
 _LOOPBACK_NAMES = ("localhost", "127.0.0.1", "::1")
 

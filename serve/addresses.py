@@ -8,7 +8,7 @@ import socket
 import struct
 import sys
 
-from .access_control import is_loopback
+from voxrt.serve.access_control import is_loopback
 
 _SIOCGIFADDR = 0x8915  # Linux: the IPv4 address of a network interface
 _ELSEWHERE = ((socket.AF_INET, "192.0.2.1"), (socket.AF_INET6, "2001:db8::1"))  # for documentation: nobody has them

@@ -12,13 +12,13 @@ import time
 from collections import deque
 from typing import TYPE_CHECKING, Any, Protocol
 
-from .packets import pack_frame
+from voxrt.serve.packets import pack_frame
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
-    from .packets import FramePacket
-    from .server_options import Limits
+    from voxrt.serve.packets import FramePacket
+    from voxrt.serve.server_options import Limits
 
 _BACKLOG_LIMIT = 256  # answers that a client may leave unread
 _FRAGMENT = 1 << 18  # bytes; a connection copies and buffers no more of a frame

@@ -17,16 +17,16 @@ from urllib.parse import parse_qs, urlsplit
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import InvalidStatus, WebSocketException
 
-from ..board.errors import Refused
-from .packets import CHUNK_LIMIT, PROTOCOL_VERSION, Chunk, pack_chunk, unpack_frame
-from .shown_text import shown_line
+from voxrt.board.errors import Refused
+from voxrt.serve.packets import CHUNK_LIMIT, PROTOCOL_VERSION, Chunk, pack_chunk, unpack_frame
+from voxrt.serve.shown_text import shown_line
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Awaitable, Mapping
     from typing import TypeVar
 
-    from ..board.scene_memory import Progress
-    from .packets import FramePacket
+    from voxrt.board.scene_memory import Progress
+    from voxrt.serve.packets import FramePacket
 
     Result = TypeVar("Result")
 
@@ -192,7 +192,7 @@ async def open_client(url: str) -> AsyncIterator[FrameClient]:
     except InvalidStatus as error:
         reason = shown_line((error.response.body or b"").decode("utf-8", "replace").strip())
         raise Refused(f"{place}: {reason or error}") from None
-    except (OSError, WebSocketException, ValueError, asyncio.TimeoutError) as error:  # noqa: UP041 - as below
+    except (OSError, WebSocketException, ValueError) as error:
         raise Refused(f"{place}: no frame server answers ({shown_line(error)}); start one: voxrt serve") from None
     async with _closing(connection):
         try:
@@ -242,7 +242,7 @@ def _read_url(url: str) -> tuple[str, str, str]:
 async def _in_time(work: Awaitable[Result], seconds: float, problem: str) -> Result:
     try:
         return await asyncio.wait_for(work, seconds)
-    except asyncio.TimeoutError:  # noqa: UP041 - Python 3.10, which boards have, has two of this name
+    except TimeoutError:
         raise Refused(f"the server {problem} within {seconds:.0f} s; it may be gone, or be no frame server") from None
 
 

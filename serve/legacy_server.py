@@ -18,14 +18,14 @@ from contextlib import asynccontextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from ..board.errors import DeviceError, Refused
-from ..board.view import Camera
-from .rate_limiter import RateLimiter
+from voxrt.board.errors import DeviceError, Refused
+from voxrt.board.view import Camera
+from voxrt.serve.rate_limiter import RateLimiter
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator
 
-    from .renderer import Renderer
+    from voxrt.serve.renderer import Renderer
 
 _REQUEST = struct.Struct("<7I")
 _SIZE = (512, 512)
@@ -81,9 +81,7 @@ class LegacyServer:
                 seconds = _IDLE_SECONDS
                 writer.write(await self._render(request))
                 await asyncio.wait_for(writer.drain(), _SEND_SECONDS)
-        except asyncio.TimeoutError:  # noqa: UP041 - Python 3.10, which boards have, has two of this name
-            pass
-        except (asyncio.IncompleteReadError, ConnectionError, Refused, DeviceError):
+        except (TimeoutError, asyncio.IncompleteReadError, ConnectionError, Refused, DeviceError):
             pass  # the protocol has no error messages: the connection is closed
         finally:
             del self._clients[task]

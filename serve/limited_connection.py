@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any, cast
 from websockets.asyncio.server import ServerConnection
 from websockets.frames import DATA_OPCODES, Frame
 
-from .rate_limiter import RateLimiter
-from .strangers import network
+from voxrt.serve.rate_limiter import RateLimiter
+from voxrt.serve.strangers import network
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from .server_options import Limits
-    from .strangers import Strangers
+    from voxrt.serve.server_options import Limits
+    from voxrt.serve.strangers import Strangers
 
 _PIECE, _LARGE_PIECE = 1 << 12, 1 << 16  # bytes that are read before the limits are looked at
 _FEW_FRAMES = 4  # in a piece: the next one may be larger

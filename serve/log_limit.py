@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import time
 
-from .rate_limiter import RateLimiter
+from voxrt.serve.rate_limiter import RateLimiter
 
 _PER_SECOND = 0.1
 _BURST = 5

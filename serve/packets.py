@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..board.device import Counters, Frame
-from ..board.errors import Refused
+from voxrt.board.device import Counters, Frame
+from voxrt.board.errors import Refused
 
 if TYPE_CHECKING:
     from typing import Final

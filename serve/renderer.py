@@ -13,23 +13,24 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from ..board.errors import DeviceError, FrameDropped, Refused, TooSlow
-from ..board.frame_drop import FrameDrop
-from ..board.scene import EMPTY_LEAF, Scene
-from ..board.scene_memory import SceneMemory
-from ..board.view import View, frame_world, refit
-from ..board.view_check import check_view
-from .packets import FramePacket
-from .solid_bounds import solid_bounds
+from voxrt.board.errors import DeviceError, FrameDropped, Refused, TooSlow
+from voxrt.board.frame_drop import FrameDrop
+from voxrt.board.scene import Scene
+from voxrt.board.scene_memory import SceneMemory
+from voxrt.board.view import View, frame_world, refit
+from voxrt.board.view_check import check_view
+from voxrt.octree import Octree, solid_bounds
+from voxrt.octree.words import EMPTY
+from voxrt.serve.packets import FramePacket
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from ..board.device import Device, Frame, Identity
-    from ..board.scene_memory import Progress
-    from ..board.view import Triple
-    from .clients import Clients
-    from .requests import ChangeView
+    from voxrt.board.device import Device, Frame, Identity
+    from voxrt.board.scene_memory import Progress
+    from voxrt.board.view import Triple
+    from voxrt.serve.clients import Clients
+    from voxrt.serve.requests import ChangeView
 
     Result = TypeVar("Result")
 
@@ -42,7 +43,7 @@ _SMALLER = 4  # a device whose frames may take longer begins with frames that ha
 EMPTY_SCENE = Scene(
     "nothing",
     1,
-    np.array([EMPTY_LEAF], dtype=np.uint32),
+    np.array([EMPTY], dtype=np.uint32),
     np.full((256, 3), 24, dtype=np.uint8),
     np.zeros(256, dtype=np.bool_),
 )
@@ -145,7 +146,7 @@ class Renderer:
             The device did not keep it; the present scene stays.
         """
         async with self._loading:
-            bounds = await asyncio.get_running_loop().run_in_executor(None, solid_bounds, scene)
+            bounds = await asyncio.get_running_loop().run_in_executor(None, self._check_and_measure, scene)
             steps = self._memory.load_in_steps(scene, progress, partial(self._render_first, scene, progress))
             complete = False
             while not complete:
@@ -237,6 +238,10 @@ class Renderer:
             raise
         finally:
             self._drop = None
+
+    def _check_and_measure(self, scene: Scene) -> tuple[Triple, Triple] | None:
+        self._memory.check(scene)  # before anything else looks at its words
+        return solid_bounds(Octree(scene.depth, scene.words))
 
     def _render(self, view: View, drop: FrameDrop | None = None) -> Frame:
         if view.frame != self._shown_frame:

@@ -5,14 +5,16 @@ from __future__ import annotations
 import asyncio
 import logging
 import time
-from dataclasses import asdict
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from ..board.errors import DeviceError, Refused
-from .packets import unpack_chunk
-from .ray_cast import cast_ray
-from .requests import (
+import numpy as np
+
+from voxrt.board.errors import DeviceError, Refused
+from voxrt.octree import Octree, frame_octree
+from voxrt.octree.camera import POSITION_UNITS
+from voxrt.serve.packets import unpack_chunk
+from voxrt.serve.requests import (
     CancelUpload,
     CastRay,
     ChangeView,
@@ -25,16 +27,17 @@ from .requests import (
     read_request,
     request_number,
 )
-from .shown_text import shown_line
+from voxrt.serve.shown_text import shown_line
+from voxrt.sim import FACE_NONE, cast_rays
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Coroutine
 
-    from ..board.scene import Scene
-    from ..board.scene_memory import Progress
-    from .clients import Client
-    from .requests import Request
-    from .session import Session
+    from voxrt.board.scene import Scene
+    from voxrt.board.scene_memory import Progress
+    from voxrt.serve.clients import Client
+    from voxrt.serve.requests import Request
+    from voxrt.serve.session import Session
 
 _PROGRESS_SECONDS = 0.05
 _REPEAT_SECONDS = 5.0  # of the newest progress, so that a client sees that the server still works
@@ -70,8 +73,7 @@ class RequestHandler:
                 self._handle_chunk(message)
             else:
                 number = request_number(message)
-                number, request = read_request(message)
-                await self._handle_request(number, request)
+                await self._handle_request(read_request(message))
         except (Refused, DeviceError) as error:
             self._refuse(number, str(error))
 
@@ -79,8 +81,8 @@ class RequestHandler:
         """Release control; an incomplete upload ends with it, and what is made of one."""
         self._session.control.release(self._client.number)
 
-    async def _handle_request(self, number: int, request: Request) -> None:
-        session, client = self._session, self._client
+    async def _handle_request(self, request: Request) -> None:
+        session, client, number = self._session, self._client, request.request
         answer: dict[str, Any] = {"type": "done", "request": number}
         match request:
             case TakeControl():
@@ -94,9 +96,8 @@ class RequestHandler:
             case CastRay():
                 self._require_control()
                 renderer = session.renderer
-                cast = partial(cast_ray, renderer.scene, request.origin, request.direction, renderer.view.frame)
-                hit = await asyncio.get_running_loop().run_in_executor(None, cast)
-                answer["hit"] = None if hit is None else asdict(hit)
+                cast = partial(_cast_ray, renderer.scene, renderer.view.frame, request)
+                answer["hit"] = await asyncio.get_running_loop().run_in_executor(None, cast)
             case ReadCounters():
                 answer["counters"] = session.counters()
             case CancelUpload():
@@ -158,6 +159,27 @@ class RequestHandler:
 
     def _refuse(self, number: int, problem: str) -> None:
         self._client.queue_answer({"type": "refused", "request": number, "problem": shown_line(problem)})
+
+
+def _cast_ray(scene: Scene, frame: int, ray: CastRay) -> dict[str, Any] | None:
+    """Find the first solid voxel on a ray, as the hardware finds it, and where the ray enters it."""
+    octree = frame_octree(Octree(scene.depth, scene.words), scene.roots[frame])
+    origin, still = np.array(ray.origin) / POSITION_UNITS, not any(ray.direction)
+    try:
+        hits = cast_rays(octree, origin, (1, 0, 0) if still else ray.direction, threads=1)
+    except ValueError as error:
+        raise Refused(str(error)) from error
+    starts_inside = hits.face[0] == FACE_NONE
+    if not hits.hit[0] or (still and not starts_inside):
+        return None
+    point = origin + hits.parameter[0] * np.array(ray.direction)
+    face = None if starts_inside else int(hits.face[0])
+    return {
+        "voxel": hits.voxel[0].tolist(),
+        "material": int(hits.material[0]),
+        "face": face,
+        "point": point.tolist(),
+    }
 
 
 class _ReportedProgress:

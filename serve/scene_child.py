@@ -1,30 +1,61 @@
 """What runs in the process that :mod:`~.scene_process` starts: it reads files, and writes the scene to its output.
 
-The output is lines of JSON: ``{"progress": [stage, done, total]}`` any number of times, then ``{"problem": text}``, or
-``{"scene": {...}}`` and its arrays: colours (256, 3) uint8, mirrors (256,) uint8, words uint32, little-endian.
+The output is lines of JSON, each one of the three structs here: any number of :class:`Stage`, then a :class:`Problem`,
+or a :class:`Described` and its arrays: colours (256, 3) uint8, mirrors (256,) uint8, words uint32, little-endian.
 """
 
 from __future__ import annotations
 
 import contextlib
-import json
 import os
 import signal
 import sys
 import threading
-from dataclasses import asdict, astuple
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO, NoReturn
+from typing import TYPE_CHECKING, BinaryIO, NoReturn, TypeAlias
 
-from ..board.errors import Refused
+import msgspec
+
+from voxrt.board.errors import Refused
+from voxrt.octree.camera import Camera, Lighting  # noqa: TC001 - msgspec resolves the annotations of this module
+from voxrt.serve.shown_text import shown_line
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from ..board.scene import Scene
-    from ..board.scene_memory import Progress
+    from voxrt.board.scene import Scene
+    from voxrt.board.scene_memory import Progress
 
 _NICE = 10
+
+
+class Stage(msgspec.Struct, frozen=True, tag=True):
+    """What :class:`~.scene_memory.Progress` receives."""
+
+    stage: str
+    done: int
+    total: int
+
+
+class Problem(msgspec.Struct, frozen=True, tag=True):
+    """Why the files are no scene."""
+
+    text: str
+
+
+class Described(msgspec.Struct, frozen=True, tag=True):
+    """A scene without its arrays; `words` counts them."""
+
+    name: str
+    depth: int
+    words: int
+    camera: Camera | None
+    lighting: Lighting | None
+    roots: tuple[int, ...]
+    period: float | None
+
+
+Message: TypeAlias = Stage | Problem | Described
 
 
 def run_child(read: Callable[[Sequence[Path], Progress], Scene], files: Sequence[str]) -> NoReturn:
@@ -43,33 +74,36 @@ def run_child(read: Callable[[Sequence[Path], Progress], Scene], files: Sequence
     _be_modest()
 
     def progress(stage: str, done: int, total: int) -> None:
-        _write(out, {"progress": [stage, done, total]})
+        _write(out, Stage(stage, done, total))
+
+    def refuse(problem: str) -> None:
+        _write(out, Problem(shown_line(problem)))
 
     try:
         scene = read([Path(name) for name in files], progress)
     except Refused as refusal:
-        _write(out, {"problem": str(refusal)})
+        refuse(str(refusal))
     except MemoryError:
-        _write(out, {"problem": "there is not enough memory for the scene; build it with a smaller depth"})
+        refuse("there is not enough memory for the scene; build it with a smaller depth")
     except OSError as error:
         name = f"{Path(os.fsdecode(error.filename)).name}: " if isinstance(error.filename, str | bytes) else ""
-        _write(out, {"problem": f"{name}cannot be read: {error.strerror or error}"})
+        refuse(f"{name}cannot be read: {error.strerror or error}")
     except Exception as error:  # noqa: BLE001 - whatever it is, the client gets an answer
-        _write(out, {"problem": f"the files cannot be read: {type(error).__name__}: {error}; please report this"})
+        refuse(f"the files cannot be read: {type(error).__name__}: {error}; please report this")
     else:
-        described = {"name": scene.name, "depth": scene.depth, "words": len(scene.words)}
-        described |= {"roots": scene.roots, "period": scene.period}
-        camera = None if scene.camera is None else astuple(scene.camera)
-        lighting = None if scene.lighting is None else asdict(scene.lighting)
-        _write(out, {"scene": {**described, "camera": camera, "lighting": lighting}})
+        count, roots = len(scene.words), scene.roots
+        _write(
+            out,
+            Described(shown_line(scene.name), scene.depth, count, scene.camera, scene.lighting, roots, scene.period),
+        )
         for array, kind in ((scene.colours, "u1"), (scene.mirrors, "u1"), (scene.words, "<u4")):
             out.write(array.astype(kind).tobytes())
         out.flush()
     os._exit(0)  # without the interpreter's end, which takes long after a large build
 
 
-def _write(out: BinaryIO, message: dict[str, Any]) -> None:
-    out.write(json.dumps(message).encode() + b"\n")
+def _write(out: BinaryIO, message: Message) -> None:
+    out.write(msgspec.json.encode(message) + b"\n")
     out.flush()
 
 

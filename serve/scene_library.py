@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from ..board.errors import Refused
+from voxrt.board.errors import Refused
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from .scene_process import SceneReader
+    from voxrt.serve.scene_process import SceneReader
 
 
 @dataclass(frozen=True, slots=True)

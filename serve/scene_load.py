@@ -5,13 +5,13 @@ from __future__ import annotations
 import asyncio
 from typing import TYPE_CHECKING
 
-from ..board.errors import Refused
+from voxrt.board.errors import Refused
 
 if TYPE_CHECKING:
     from collections.abc import Coroutine
     from typing import Any
 
-    from ..board.scene import Scene
+    from voxrt.board.scene import Scene
 
 
 class SceneLoad:

@@ -8,27 +8,26 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import json
 import os
 import signal
 import sys
 import tempfile
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
+import msgspec
 import numpy as np
 
-from ..board.errors import Refused
-from ..board.scene import Scene
-from ..board.view import Camera, Lighting
-from .scene_files import MEMORY_SUFFIXES
-from .shown_text import shown_line
+from voxrt.board.errors import Refused
+from voxrt.board.scene import Scene
+from voxrt.serve.scene_child import Described, Message, Problem, Stage
+from voxrt.serve.shown_text import shown_line
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from ..board.scene_memory import Progress
+    from voxrt.board.scene_memory import Progress
 
 READ_SECONDS = 600.0
 """The longest time that the files of a scene may take."""
@@ -87,7 +86,7 @@ class ChildReader:
         try:
             with tempfile.TemporaryDirectory(prefix="voxrt-scene-") as scratch:
                 return await asyncio.wait_for(self._read(paths, progress, scratch), self.seconds)
-        except asyncio.TimeoutError:  # noqa: UP041 - Python 3.10, which boards have, has two of this name
+        except TimeoutError:
             raise Refused(
                 f"the scene takes more than {self.seconds:.0f} s to build; build it before: voxrt build"
             ) from None
@@ -116,25 +115,19 @@ class ChildReader:
             await process.wait()
 
 
-def memory_reader() -> ChildReader:
-    """Return the reader of octree memories, which needs no other part of voxrt."""
-    return ChildReader(MEMORY_SUFFIXES, ("-m", f"{__package__}.scene_files"))
-
-
 async def _receive(process: asyncio.subprocess.Process, progress: Progress) -> Scene:
     out = process.stdout
     assert out is not None
     try:
         while True:
-            message = json.loads(await out.readline())
-            if "progress" in message:
-                stage, done, total = message["progress"]
-                progress(str(stage), int(done), int(total))
-            elif "problem" in message:
-                raise Refused(shown_line(message["problem"]))
-            else:
-                return await _receive_scene(out, message["scene"])
-    except (ValueError, KeyError, TypeError, asyncio.IncompleteReadError):
+            match msgspec.json.decode(await out.readline(), type=Message):
+                case Stage(stage, done, total):
+                    progress(stage, done, total)
+                case Problem(text):
+                    raise Refused(shown_line(text))
+                case described:
+                    return await _receive_scene(out, described)
+    except (ValueError, msgspec.MsgspecError, asyncio.IncompleteReadError):
         code = await process.wait()
         how = signal.Signals(-code).name if code < 0 else f"exit code {code}"
         raise Refused(
@@ -142,12 +135,8 @@ async def _receive(process: asyncio.subprocess.Process, progress: Progress) -> S
         ) from None
 
 
-def _value(value: Any) -> Any:  # noqa: ANN401 - JSON has lists for tuples
-    return tuple(value) if isinstance(value, list) else value
-
-
-async def _receive_scene(out: asyncio.StreamReader, described: dict[str, Any]) -> Scene:
-    count = int(described["words"])
+async def _receive_scene(out: asyncio.StreamReader, described: Described) -> Scene:
+    count = described.words
     if not 1 <= count <= WORDS_LIMIT:
         raise Refused(f"the scene has {count} words, which is more than {WORDS_LIMIT}; build it with a smaller depth")
     colours = np.frombuffer(await out.readexactly(_COLOURS), dtype=np.uint8).reshape(256, 3)
@@ -160,15 +149,6 @@ async def _receive_scene(out: asyncio.StreamReader, described: dict[str, Any]) -
             raise asyncio.IncompleteReadError(part, len(data) - at)
         data[at : at + len(part)] = part
         at += len(part)
-    camera, lighting = described["camera"], described["lighting"]
-    return Scene(
-        shown_line(described["name"]),
-        int(described["depth"]),
-        np.frombuffer(data, dtype="<u4").astype(np.uint32, copy=False),
-        colours,
-        mirrors,
-        None if camera is None else Camera(*(tuple(map(int, triple)) for triple in camera)),  # type: ignore[arg-type]
-        None if lighting is None else Lighting(**{name: _value(value) for name, value in lighting.items()}),
-        tuple(map(int, described["roots"])),
-        None if described["period"] is None else float(described["period"]),
-    )
+    words = np.frombuffer(data, dtype="<u4").astype(np.uint32, copy=False)
+    name, camera, lighting = shown_line(described.name), described.camera, described.lighting
+    return Scene(name, described.depth, words, colours, mirrors, camera, lighting, described.roots, described.period)

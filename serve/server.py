@@ -8,7 +8,7 @@ import logging
 import socket
 import time
 from functools import partial
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, Self, cast
 from urllib.parse import quote
 
 from websockets.asyncio.server import Server, ServerConnection, serve
@@ -16,29 +16,29 @@ from websockets.datastructures import Headers
 from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Response
 
-from ..board.errors import Refused
-from .access_control import AccessControl, is_loopback
-from .addresses import accepted_hosts, reachable_hosts
-from .legacy_server import LegacyServer
-from .limited_connection import ConnectionGuard, LimitedConnection
-from .log_limit import LogLimit
-from .packets import CHUNK_HEADER, CHUNK_LIMIT, PROTOCOL_VERSION
-from .page_files import HEADERS, load_page_files
-from .rate_limiter import RateLimiter
-from .request_handler import RequestHandler
-from .session import Session
-from .strangers import Strangers
-from .token import check_token
+from voxrt.board.errors import Refused
+from voxrt.serve.access_control import AccessControl, is_loopback
+from voxrt.serve.addresses import accepted_hosts, reachable_hosts
+from voxrt.serve.legacy_server import LegacyServer
+from voxrt.serve.limited_connection import ConnectionGuard, LimitedConnection
+from voxrt.serve.log_limit import LogLimit
+from voxrt.serve.packets import CHUNK_HEADER, CHUNK_LIMIT, PROTOCOL_VERSION
+from voxrt.serve.page_files import HEADERS, load_page_files
+from voxrt.serve.rate_limiter import RateLimiter
+from voxrt.serve.request_handler import RequestHandler
+from voxrt.serve.session import Session
+from voxrt.serve.strangers import Strangers
+from voxrt.serve.token import check_token
 
 if TYPE_CHECKING:
     from collections.abc import Coroutine
 
     from websockets.http11 import Request
 
-    from ..board.device import Device
-    from .clients import Client
-    from .scene_library import SceneLibrary
-    from .server_options import ServerOptions
+    from voxrt.board.device import Device
+    from voxrt.serve.clients import Client
+    from voxrt.serve.scene_library import SceneLibrary
+    from voxrt.serve.server_options import ServerOptions
 
 WEBSOCKET_PATH = f"/v{PROTOCOL_VERSION}"
 _SEND_BUFFER = 1 << 19  # bytes per connection, about half a frame: a slow client then gets new frames, not queued ones
@@ -110,7 +110,7 @@ class FrameServer:
         """The first of :attr:`urls`."""
         return self.urls[0]
 
-    async def __aenter__(self) -> FrameServer:  # noqa: PYI034 - Self needs Python 3.11
+    async def __aenter__(self) -> Self:
         async with contextlib.AsyncExitStack() as stack:
             stack.callback(self.session.close)
             stack.push_async_callback(self._cancel_tasks)

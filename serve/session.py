@@ -8,27 +8,27 @@ from dataclasses import asdict
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
-from ..board.errors import Refused
-from ..board.view import frame_world
-from .clients import Clients
-from .control_transfer import ControlTransfer
-from .packets import CHUNK_LIMIT, PROTOCOL_VERSION
-from .renderer import DEFAULT_SIZE, Renderer
-from .scene_files import MEMORY_SUFFIXES
-from .scene_load import SceneLoad
-from .upload import UPLOAD_LIMIT, Upload, memory_bytes
+from voxrt.board.errors import Refused
+from voxrt.board.view import frame_world
+from voxrt.serve.clients import Clients
+from voxrt.serve.control_transfer import ControlTransfer
+from voxrt.serve.packets import CHUNK_LIMIT, PROTOCOL_VERSION
+from voxrt.serve.renderer import DEFAULT_SIZE, Renderer
+from voxrt.serve.scene_load import SceneLoad
+from voxrt.serve.upload import UPLOAD_LIMIT, Upload, memory_bytes
 
 if TYPE_CHECKING:
     from collections.abc import Coroutine
 
-    from ..board.device import Device
-    from ..board.scene import Scene
-    from ..board.scene_memory import Progress
-    from .requests import StartUpload
-    from .scene_library import SceneLibrary
-    from .server_options import Limits
+    from voxrt.board.device import Device
+    from voxrt.board.scene import Scene
+    from voxrt.board.scene_memory import Progress
+    from voxrt.serve.requests import StartUpload
+    from voxrt.serve.scene_library import SceneLibrary
+    from voxrt.serve.server_options import Limits
 
 _WATCH_SECONDS = 0.5
+_MEMORY_SUFFIXES = (".blob", ".mem")
 
 
 class Session:
@@ -52,8 +52,6 @@ class Session:
         self._library = library
         self._load: SceneLoad | None = None
         self._memory_bytes = memory_bytes(device.identity.capacity)
-        reads_assets = not set(library.reader.suffixes) <= set(MEMORY_SUFFIXES)
-        self._upload_limit = UPLOAD_LIMIT if reads_assets else self._memory_bytes
         self._started = time.monotonic()
 
     async def run(self) -> None:
@@ -90,7 +88,7 @@ class Session:
             },
             "scenes": sorted(self._library.scenes),
             "suffixes": self._library.reader.suffixes,
-            "limits": {"chunk": CHUNK_LIMIT, "upload": self._upload_limit},
+            "limits": {"chunk": CHUNK_LIMIT, "upload": UPLOAD_LIMIT},
         }
 
     def state(self) -> dict[str, Any]:
@@ -148,12 +146,10 @@ class Session:
         """
         self.drop_upload()
         size = sum(file.size for file in announced.files)
-        if size > self._upload_limit:
-            raise Refused(
-                f"an upload of {size} bytes is more than the limit of {self._upload_limit}; make the files smaller"
-            )
+        if size > UPLOAD_LIMIT:
+            raise Refused(f"an upload of {size} bytes is more than the limit of {UPLOAD_LIMIT}; make the files smaller")
         for file in announced.files:
-            if PurePath(file.name).suffix.lower() in MEMORY_SUFFIXES and file.size > self._memory_bytes:
+            if PurePath(file.name).suffix.lower() in _MEMORY_SUFFIXES and file.size > self._memory_bytes:
                 identity = self.renderer.device.identity
                 raise Refused(
                     f"{file.name} has {file.size} bytes, and {identity.name} holds {identity.capacity} words, which "

@@ -7,10 +7,10 @@ import ipaddress
 import time
 from typing import TYPE_CHECKING
 
-from .rate_limiter import RateLimiter
+from voxrt.serve.rate_limiter import RateLimiter
 
 if TYPE_CHECKING:
-    from .server_options import Limits
+    from voxrt.serve.server_options import Limits
 
 _ADDRESSES = 4096
 _IPV6_BITS = 64  # of an address that one customer has

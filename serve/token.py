@@ -5,8 +5,8 @@ from __future__ import annotations
 import secrets
 from typing import TYPE_CHECKING
 
-from ..board.errors import Refused
-from .access_control import is_loopback
+from voxrt.board.errors import Refused
+from voxrt.serve.access_control import is_loopback
 
 if TYPE_CHECKING:
     from pathlib import Path

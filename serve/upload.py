@@ -7,13 +7,13 @@ import zlib
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..board.errors import Refused
+from voxrt.board.errors import Refused
 
 if TYPE_CHECKING:
     from typing import BinaryIO
 
-    from .packets import Chunk
-    from .requests import StartUpload
+    from voxrt.serve.packets import Chunk
+    from voxrt.serve.requests import StartUpload
 
 UPLOAD_LIMIT = 1 << 28
 """Bytes that the files of an upload may have together."""

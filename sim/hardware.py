@@ -62,17 +62,8 @@ def render_hardware(
 ) -> Frame:
     """Render a frame on the verilated ray tracer.
 
-    Parameters
-    ----------
-    rom, camera, size, lighting, config, dram, root, lod
-        As :func:`voxrt.sim.render` takes them, checked.
-    scale
-        Of the level of detail: the register ``lod.scale``; 0 without.
-
-    Raises
-    ------
-    NoSuchConfigurationError, SimulatorError
-        As :func:`voxrt.sim.render` does.
+    Arguments and errors are those of :func:`voxrt.sim.render`, checked. `scale` is the register ``lod.scale``; 0
+    without level of detail.
     """
     started = time.perf_counter()
     _rtl = _ray_tracer(config)

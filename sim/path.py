@@ -11,6 +11,7 @@ import numpy as np
 
 from voxrt.octree import Octree
 from voxrt.octree.camera import DIRECTION_LIMIT, POSITION_UNITS
+from voxrt.octree.words import is_leaf, material
 from voxrt.sim import _model
 from voxrt.sim.errors import SimulatorError
 from voxrt.voxelize.arguments import instance, whole_array
@@ -53,7 +54,12 @@ class Reading:
     @property
     def is_leaf(self) -> bool:
         """Whether the word is a material and not a pointer."""
-        return self.word >> 31 == 1
+        return is_leaf(self.word)
+
+    @property
+    def material(self) -> int:
+        """Material id of a leaf, 0 for empty space."""
+        return material(self.word)
 
     @property
     def end(self) -> Triple:
@@ -202,15 +208,15 @@ def follow_ray(octree: Octree, origin: ArrayLike, direction: ArrayLike) -> RayPa
     if max(map(abs, way)) >= DIRECTION_LIMIT:
         raise SimulatorError(f"the ray's direction {way} is not below 2**20; scale it down")
     followed = _model.Memory(octree.words, octree.depth).follow(_int32(start), _int32(way))
-    material = followed.material
+    hit = followed.material
     return RayPath(
         origin=start,
         direction=way,
         root=int(octree.words[0]),
         readings=tuple(Reading(**reading._asdict()) for reading in followed.readings),
-        material=material,
+        material=hit,
         face=followed.face,
-        cell=followed.cell if material else None,
+        cell=followed.cell if hit else None,
     )
 
 

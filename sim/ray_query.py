@@ -110,11 +110,11 @@ def cast_rays(octree: Octree, origins: ArrayLike, directions: ArrayLike, *, thre
 
 def _triples(name: str, value: ArrayLike) -> NDArray[np.float64]:
     """Return finite numbers, float64, shape (N, 3)."""
-    given = np.asarray(value)
-    given = given[None] if given.ndim == 1 else given
-    if given.dtype.kind in "iu":
-        given = whole_array(name, given, ("N", 3), np.int64, low=-_MOST_EXACT, high=_MOST_EXACT).astype(np.float64)
-    return real_array(name, given, ("N", 3)).astype(np.float64, copy=False)
+    numbers = np.asarray(value)
+    numbers = numbers[None] if numbers.ndim == 1 else numbers
+    if numbers.dtype.kind in "iu":
+        numbers = whole_array(name, numbers, ("N", 3), np.int64, low=-_MOST_EXACT, high=_MOST_EXACT).astype(np.float64)
+    return real_array(name, numbers, ("N", 3)).astype(np.float64, copy=False)
 
 
 def _places(origins: NDArray[np.float64], first: int) -> NDArray[np.int32]:

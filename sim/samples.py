@@ -24,10 +24,7 @@ Background: TypeAlias = Triple | Literal["transparent"]
 def put_background(rom: Rom, background: Background | None) -> Rom:
     """Give a memory with another background; None and ``"transparent"`` leave it.
 
-    Raises
-    ------
-    TypeError, ValueError
-        A colour that is not three numbers of 0 … 255.
+    TypeError or ValueError for a colour that is not three numbers of 0 … 255.
     """
     if background is None or background == "transparent":
         return rom

@@ -9,18 +9,7 @@ from voxrt.sim.errors import SimulatorError
 
 
 def import_verilated(instead: str) -> Any:  # noqa: ANN401 - the native module may be absent
-    """Import ``voxrt.sim._rtl``.
-
-    Parameters
-    ----------
-    instead
-        What a user does without it, for the error.
-
-    Raises
-    ------
-    SimulatorError
-        It is not in this installation.
-    """
+    """Import ``voxrt.sim._rtl``; SimulatorError, which tells what to do `instead`, where it is not installed."""
     try:
         return import_module("voxrt.sim._rtl")
     except ImportError as error:

@@ -32,7 +32,7 @@ def write_lift_glb(path: Path) -> Path:
     accessors[0] |= {"min": [0, 0, 0], "max": [1, 1, 1]}
     accessors[2] |= {"min": [0], "max": [2]}
     colours = {"stone": [0.5, 0.5, 0.5, 1], "red": [0.8, 0.1, 0.1, 1]}
-    said = {
+    document = {
         "asset": {"version": "2.0"},
         "scene": 0,
         "scenes": [{"nodes": [0, 1]}],
@@ -57,7 +57,7 @@ def write_lift_glb(path: Path) -> Path:
         "bufferViews": views,
         "buffers": [{"byteLength": len(blob)}],
     }
-    text = json.dumps(said).encode()
+    text = json.dumps(document).encode()
     text += b" " * (-len(text) % 4)
     chunks = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(blob), 0x004E4942) + blob
     path.write_bytes(struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks)

@@ -12,6 +12,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 ROOMS = ("voxrt", "voxrt.octree", "voxrt.export", "voxrt.sim", "voxrt.view")
+FOLDERS = tuple(f"voxrt.{folder}" for folder in ("options", "sources", "views", "plans", "building", "boards"))
 
 NEEDS = {
     "voxrt.sim.likeness": "open3d",
@@ -38,7 +39,7 @@ RETURNED = {
 
 
 def modules():
-    for room in ROOMS:
+    for room in (*ROOMS, *FOLDERS):
         package = importlib.import_module(room)
         folders = [path for path in package.__path__ if Path(path).resolve().is_relative_to(ROOT)] or package.__path__
         for module in pkgutil.iter_modules(folders):
@@ -74,9 +75,9 @@ def test_the_example_runs(name):
             if needed == "pyvista":
                 skip_unless_pyvista_draws()
     runner = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS | doctest.FAIL_FAST)
-    said = []
-    runner.run(EXAMPLES[name], out=said.append)
-    assert runner.failures == 0, "".join(said)
+    output = []
+    runner.run(EXAMPLES[name], out=output.append)
+    assert runner.failures == 0, "".join(output)
 
 
 def skip_unless_pyvista_draws():
@@ -107,7 +108,7 @@ def test_the_public_name_is_documented_with_an_example(value):
     if module.startswith(("voxrt.voxelize", "voxrt.octree.camera")):
         pytest.skip("the tests of that room hold it")
     assert value.__doc__
-    room = ".".join(module.split(".")[:2])
+    room = module if module.startswith(FOLDERS) else ".".join(module.split(".")[:2])
     if issubclass(type(value), type) and (issubclass(value, Exception) or f"{room}.{value.__name__}" in RETURNED):
         return
     named = [name for name in EXAMPLES if name.startswith(f"{module}.{value.__qualname__}")]

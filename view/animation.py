@@ -30,19 +30,8 @@ _PALETTE_PICTURES = 8  # of an animation that give its palette
 def write_animation(path: Path, pictures: Iterable[NDArray[np.uint8]]) -> None:
     """Write pictures as an animation that plays for ever (GIF) or once (MP4), :data:`PICTURES_A_SECOND`.
 
-    Parameters
-    ----------
-    path
-        The file; its suffix is one of :data:`ANIMATION_SUFFIXES`.
-    pictures
-        One or more, uint8, shape (H, W, 3), sRGB, all of one size; for MP4 of even sides.
-
-    Raises
-    ------
-    ViewerError
-        MP4 is asked for and imageio-ffmpeg is not installed.
-    OSError
-        The file cannot be written.
+    They are uint8, shape (H, W, 3), sRGB, one or more, all of one size; for MP4 of even sides. ViewerError for MP4
+    without imageio-ffmpeg; OSError where the file cannot be written.
     """
     if path.suffix.lower() == ".mp4":
         _write_mp4(path, pictures)
@@ -51,21 +40,9 @@ def write_animation(path: Path, pictures: Iterable[NDArray[np.uint8]]) -> None:
 
 
 def write_gif(path: Path, pictures: Iterable[NDArray[np.uint8]], period: float | None = None) -> None:
-    """Write pictures as a GIF that plays for ever.
+    """Write pictures, as for :func:`write_animation`, as a GIF that plays for ever.
 
-    Parameters
-    ----------
-    path
-        The file.
-    pictures
-        One or more, uint8, shape (H, W, 3), sRGB, all of one size.
-    period
-        Seconds from one to the next, in steps of 1/100; None for that of :data:`PICTURES_A_SECOND`.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
+    `period` is the seconds from one to the next, in steps of 1/100; None for that of :data:`PICTURES_A_SECOND`.
     """
     images = [Image.fromarray(picture) for picture in pictures]
     palette = _palette(images)
@@ -118,7 +95,7 @@ def _write_mp4(path: Path, pictures: Iterable[NDArray[np.uint8]]) -> None:
             check=False,
         )
         if done.returncode:
-            *_, said = done.stderr.decode(errors="replace").strip().splitlines() or ["no reason given"]
-            raise ViewerError(f"FFmpeg failed: {said}; write a .gif")
+            *_, last_line = done.stderr.decode(errors="replace").strip().splitlines() or ["no reason given"]
+            raise ViewerError(f"FFmpeg failed: {last_line}; write a .gif")
         data = film.read_bytes()
     write_atomically(path, data)

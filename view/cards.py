@@ -158,15 +158,7 @@ def _frame_html(frame: Frame) -> str:
 
 
 def register_card(kind: type, html_of: Callable[[Any], str], png_of: Callable[[Any], bytes] | None = None) -> None:
-    """Let notebooks show the values of a class by these functions.
-
-    Parameters
-    ----------
-    kind
-        The class.
-    html_of, png_of
-        Return a value's card as HTML, and its picture as PNG; None for no picture.
-    """
+    """Let notebooks show the values of a class as HTML, and as a PNG if there is a function for that."""
     kind._repr_html_ = html_of  # type: ignore[attr-defined]
     if png_of is not None:
         kind._repr_png_ = png_of  # type: ignore[attr-defined]

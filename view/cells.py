@@ -131,13 +131,7 @@ def open_sides(grid: pyvista.UnstructuredGrid) -> tuple[NDArray[np.int64], NDArr
 
 
 def import_pyvista() -> ModuleType:
-    """Import PyVista.
-
-    Raises
-    ------
-    ViewerError
-        It is not installed, or its VTK cannot be loaded.
-    """
+    """Import PyVista; ViewerError where it is not installed, or its VTK cannot be loaded."""
     try:
         return import_module("pyvista")  # it and VTK are large, and optional
     except ModuleNotFoundError as error:

@@ -39,26 +39,8 @@ def draw(
 ) -> tuple[pyvista.Plotter, list[pyvista.UnstructuredGrid]]:
     """Draw panes side by side, seen alike; or one, a preview beside it and the ray of the preview's pixel.
 
-    Parameters
-    ----------
-    panes
-        One or more; with a preview one.
-    size
-        Width and height of all together, pixels.
-    preview
-        Where the ray that is shown comes from.
-    off_screen
-        Draw for a picture and not in a window.
-
-    Returns
-    -------
-    tuple
-        The plotter, and the cells of each pane. The panes are the plotter's last subplots.
-
-    Raises
-    ------
-    ViewerError
-        PyVista is missing, or there is nothing to draw on.
+    Return the plotter, whose last subplots are the panes, and the cells of each pane. `size` is the width and height of
+    all together, pixels. ViewerError where PyVista is missing, or there is nothing to draw on.
     """
     check_screen(off_screen=off_screen)
     pv = import_pyvista()
@@ -123,8 +105,8 @@ def draw_octants(
     if grid.n_cells and (entries := _legend(pane, grid, levels)):
         top = 1 - min(0.2, _TITLE / plotter.window_size[1])
         draw_legend(plotter, "legend", entries, left=1 - legend_width(plotter), top=top)
-    told = f"{pane.rom.name}: {grid.n_cells:,} octants shown, {int(grid.field_data['hidden'][0]):,} hidden"
-    plotter.add_text(told, position="upper_left", font_size=10, color=TEXT, name=f"told {number}")
+    caption = f"{pane.rom.name}: {grid.n_cells:,} octants shown, {int(grid.field_data['hidden'][0]):,} hidden"
+    plotter.add_text(caption, position="upper_left", font_size=10, color=TEXT, name=f"told {number}")
 
 
 def add_octants(

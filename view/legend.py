@@ -36,18 +36,7 @@ def draw_legend(
     """Draw a legend in the current subplot, in place of the one of that name.
 
     Entries that do not fit between `top` and `bottom` are counted in the last line. Names that do not fit between
-    `left` and the subplot's edge are cut.
-
-    Parameters
-    ----------
-    plotter
-        Where it is drawn.
-    name
-        Of the legend.
-    entries
-        Names and colours.
-    left, top, bottom
-        Parts of the subplot's width and height; 0, 0 is its lower left corner.
+    `left` and the subplot's edge are cut. All three are parts of the subplot's width and height, from its lower left.
     """
     pv = import_pyvista()
     from vtkmodules.vtkRenderingCore import vtkActor2D, vtkCoordinate, vtkPolyDataMapper2D  # noqa: PLC0415 - optional

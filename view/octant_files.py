@@ -40,25 +40,13 @@ def read_octants(path: str, **_options: object) -> pyvista.UnstructuredGrid:
     """Read a memory, with its manifest or without, as the cells that :func:`voxrt.view.octants` makes of it.
 
     PyVista finds this by the entry point ``pyvista.readers``, and hands on options that are meant for other readers.
-
-    Raises
-    ------
-    RomError, AssetError
-        The file is no memory.
-    DoesNotFitError
-        It holds too many octants to show.
+    RomError or AssetError where the file is no memory; DoesNotFitError where it holds too many octants to show.
     """
     return octants(read_any(path)[0].rom)
 
 
 def write_octants(path: Path, grid: pyvista.UnstructuredGrid) -> None:
-    """Write octants as a ``.vtu`` file for ParaView, all of it or nothing.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
-    """
+    """Write octants as a ``.vtu`` file for ParaView, all of it or nothing."""
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter  # noqa: PLC0415 - optional
 
     writer = vtkXMLUnstructuredGridWriter()
@@ -72,19 +60,7 @@ def write_octants(path: Path, grid: pyvista.UnstructuredGrid) -> None:
 def write_glb(path: Path, rom: Rom, mesh: OctantMesh) -> None:
     """Write octants as a binary glTF file: one mesh per material, of the sides that can be seen.
 
-    Parameters
-    ----------
-    path
-        The file.
-    rom
-        The memory. The file is in the scene's metres if the memory knows its place in the scene, else in voxels.
-    mesh
-        Some of its octants.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
+    The file is in the scene's metres if the memory knows its place in the scene, else in voxels.
     """
     trimesh: Any = import_module("trimesh")  # slow to import
 
@@ -119,21 +95,8 @@ def write_glb(path: Path, rom: Rom, mesh: OctantMesh) -> None:
 def write_ply(path: Path, rom: Rom, mesh: OctantMesh) -> None:
     """Write octants as a binary PLY file: the visible sides, each with the colour of its material.
 
-    A side is two triangles: some readers split quads and keep the colours of the first halves alone.
-
-    Parameters
-    ----------
-    path
-        The file.
-    rom
-        The memory. The file is in the scene's metres if the memory knows its place in the scene, else in voxels.
-    mesh
-        Some of its octants.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
+    A side is two triangles: some readers split quads and keep the colours of the first halves alone. The file has the
+    units of :func:`write_glb`.
     """
     quads, cells = mesh.sides()
     faces = np.zeros(2 * len(quads), _PLY_FACE)

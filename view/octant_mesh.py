@@ -55,14 +55,9 @@ class OctantMesh:
     owners: NDArray[np.int16] | None = None
 
     def sides(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Return the sides that can be seen.
+        """Return the sides that can be seen, and the octant of each (int64, shape (S,)).
 
-        Returns
-        -------
-        quads
-            int64, shape (S, 4): rows of `points`, counter-clockwise seen from outside.
-        octants
-            int64, shape (S,): the octant of each.
+        The sides are int64, shape (S, 4): rows of `points`, counter-clockwise seen from outside.
         """
         octants, sides = np.nonzero(self.open_sides[:, None] >> np.arange(6) & 1)
         return self.corners[octants[:, None], SIDES[sides]], octants
@@ -76,36 +71,10 @@ def octant_mesh(
     surface: bool = True,
     owners: Owners | None = None,
 ) -> OctantMesh:
-    """Make the mesh of some solid leaves.
+    """Make the mesh of some solid leaves of a memory, both in Morton order.
 
-    Parameters
-    ----------
-    rom
-        The memory.
-    solid
-        Some of its solid leaves, in Morton order.
-    box
-        Cut the octants at these corners; None leaves them whole.
-    surface
-        Leave out octants that the others cover on all six sides.
-    owners
-        The owners of the voxels, of the same grid.
-
-    Returns
-    -------
-    OctantMesh
-        In Morton order.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from voxrt.octree import Rom, from_dense
-    >>> from voxrt.octree.leaf_arrays import solid_leaves
-    >>> from voxrt.voxelize import EMPTY, Material
-    >>> rom = Rom("cube", from_dense(np.ones((2, 2, 2), int)), (EMPTY, Material("grey", (99, 99, 99))))
-    >>> mesh = octant_mesh(rom, solid_leaves(rom.octree))
-    >>> mesh.points.shape, mesh.corners.shape, mesh.sides()[0].shape
-    ((8, 3), (1, 8), (6, 4))
+    The octants are cut at the corners of `box`; None leaves them whole. `surface` leaves out octants that the others
+    cover on all six sides. `owners` are those of the voxels, of the same grid.
     """
     covered = covered_sides(solid)
     shown = ~covered.all(axis=1) if surface else np.ones(len(solid.levels), np.bool_)

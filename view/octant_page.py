@@ -13,6 +13,7 @@ import numpy as np
 
 from voxrt.export.atomic import write_atomically
 from voxrt.octree.camera import FACES
+from voxrt.octree.words import EMPTY
 
 if TYPE_CHECKING:
     from voxrt.octree import Rom
@@ -25,21 +26,7 @@ _PAGE = Path(__file__).with_suffix(".html")
 def write_page(path: Path, rom: Rom, mesh: OctantMesh, faces: Faces = FACES) -> None:
     """Write octants as a page that needs no other file. A click shows an octant's address, word, level and material.
 
-    Parameters
-    ----------
-    path
-        The file.
-    rom
-        The memory and its materials.
-    mesh
-        Some of its octants.
-    faces
-        The brightness of the sides.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
+    `faces` is the brightness of the sides.
     """
     points = mesh.points
     packed = b"".join(
@@ -55,6 +42,7 @@ def write_page(path: Path, rom: Rom, mesh: OctantMesh, faces: Faces = FACES) -> 
     scene = {
         "title": f"{rom.name}: {len(mesh.levels):,} octants shown, {mesh.hidden:,} hidden",
         "depth": rom.octree.depth,
+        "empty": EMPTY,
         "count": len(mesh.levels),
         "materials": [{"name": material.name, "colour": material.colour} for material in rom.materials],
         "octants": base64.b64encode(zlib.compress(packed, 9)).decode(),

@@ -26,10 +26,7 @@ _MARGIN = 0.92
 def check_screen(*, off_screen: bool) -> None:
     """Refuse to draw where VTK could not, which it does not survive.
 
-    Raises
-    ------
-    ViewerError
-        There is no screen and one is wanted, or there is neither a screen nor a library that draws without one.
+    ViewerError without a screen where one is wanted, or with neither a screen nor a library that draws without one.
     """
     pv = import_pyvista()
     if not off_screen:

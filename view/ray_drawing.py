@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from voxrt.octree.words import is_leaf, material
 from voxrt.view.cells import import_pyvista
 from voxrt.view.legend import LINE, draw_legend
 from voxrt.view.plotter import TEXT, place_eye, place_eye_around
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from voxrt.view.pane import DrawnRay, Pane, Preview
 
 PREVIEW_WIDTH, PREVIEW_HEIGHT = 0.42, 0.4
-"""Of a preview, as parts of the picture's."""
+"""The size of a preview, as parts of the picture's."""
 
 _COLUMN, _LINE = 0.61, 1.1  # of the table, as parts of the letters' size
 _SMALLEST, _READABLE, _LARGEST = 7, 9, 15  # letters of the table; smaller ones than the readable only for wide tables
@@ -46,9 +47,9 @@ def draw_ray(plotter: pyvista.Plotter, pane: Pane, preview: Preview, pixel: tupl
     pv = import_pyvista()
     ray = preview.follow(pixel)
     _mark(plotter, preview, pixel)
-    leaf = ray.words >> 31 == 1
-    solid = leaf & (ray.words & 0xFF != 0)
-    hit = pane.rom.materials[int(ray.words[solid][0]) & 0xFF] if solid.any() else None
+    leaf = is_leaf(ray.words)
+    solid = leaf & (material(ray.words) != 0)
+    hit = pane.rom.materials[material(int(ray.words[solid][0]))] if solid.any() else None
     plotter.subplot(1, 0)
     entries = [("words that are pointers", _POINTER), ("words that are empty leaves", _SPACE), ("the ray", _RAY)]
     if hit is not None:
@@ -128,10 +129,10 @@ def _turn_to_ray(plotter: pyvista.Plotter, ray: DrawnRay) -> None:
     aside = np.cross(along, (0, 1, 0))
     aside = aside / np.linalg.norm(aside) if aside.any() else np.array((1.0, 0, 0))
     aside *= 1 if aside[2] >= 0 else -1
-    leaf = ray.words >> 31 == 1
+    leaf = is_leaf(ray.words)
     ends = ray.corners + (1 << ray.levels)[:, None]
     x, y, z = np.add(aside, (0, 0.35, 0)).tolist()
-    if leaf.any() and ray.words[-1] & 0xFF:
+    if leaf.any() and material(int(ray.words[-1])):
         middle = (ray.corners[-1] + ends[-1]) / 2
         place_eye_around(plotter, middle, np.concatenate([ray.corners[leaf], ends[leaf]]), (x, y, z))
     else:

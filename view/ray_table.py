@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from voxrt.octree.words import is_leaf, material
 from voxrt.sim import FACE_NONE
 
 if TYPE_CHECKING:
@@ -65,9 +66,9 @@ def _plane(path: RayPath, reading: Reading) -> str:
 
 
 def _meaning(rom: Rom | None, word: int) -> str:
-    if not word >> 31:
+    if not is_leaf(word):
         return f"pointer to 0x{word:X}"
-    return f"leaf: {_name(rom, word & 0xFF)}"
+    return f"leaf: {_name(rom, material(word))}"
 
 
 def _name(rom: Rom | None, material: int) -> str:

@@ -37,12 +37,9 @@ def scene_triangles(scene: Scene, grid: Grid) -> NDArray[np.float64]:
 
 
 def find_owners(scene: Scene, grid: Grid) -> Owners:
-    """Tell whose each voxel of a scene is: voxelize it once more, with a material an object.
+    """Tell whose each voxel of a scene is: voxelize it once more, with a material per object.
 
-    Raises
-    ------
-    DoesNotFitError
-        More objects than there are material ids.
+    DoesNotFitError for more objects than there are material ids.
     """
     if len(scene.objects) > MATERIAL_LIMIT:
         raise DoesNotFitError(
@@ -70,12 +67,9 @@ def find_owners(scene: Scene, grid: Grid) -> Owners:
 def preview_of(
     rom: Rom, camera: Camera, size: tuple[int, int], pixel: tuple[int, int], *, flat: bool = False
 ) -> Preview:
-    """Give a memory's picture, in which a pixel can be chosen to see its ray; `flat` shows materials as they are.
+    """Return a memory's picture, in which a pixel can be chosen to see its ray; `flat` shows materials as they are.
 
-    Raises
-    ------
-    SimulatorError
-        The camera's directions are too large.
+    SimulatorError where the camera's directions are too large.
     """
 
     def follow(pixel: tuple[int, int]) -> DrawnRay:

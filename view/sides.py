@@ -15,20 +15,11 @@ if TYPE_CHECKING:
 
 
 def covered_sides(solid: Leaves) -> NDArray[np.bool_]:
-    """Tell which sides of some solid leaves are covered by the others.
+    """Tell which sides (bool, shape (N, 6): low and high on x, y, z) of N solid leaves are covered by the others.
 
-    A side is as covered as the area in which others touch it is large. Two leaves that touch do so with the whole side
-    of the smaller one, so that looking for the leaf behind one voxel of each side finds all pairs: N log N.
-
-    Parameters
-    ----------
-    solid
-        N solid leaves that do not overlap, in Morton order. Nothing is solid beside them.
-
-    Returns
-    -------
-    NDArray[np.bool_]
-        Shape (N, 6): low and high side on x, on y, on z.
+    The leaves are all that is solid, in Morton order, and do not overlap. A side is as covered as the area in which
+    others touch it is large. Two leaves that touch do so with the whole side of the smaller one, so that looking for
+    the leaf behind one voxel of each side finds all pairs: N log N.
     """
     corners, levels = solid.corners.astype(np.int64), solid.levels.astype(np.int64)
     codes = morton(corners)

@@ -271,12 +271,12 @@ def real_array(name: str, value: object, shape: Sequence[int | str], *, finite: 
         ...
     ValueError: vertices must have shape (V, 3), not (2, 2)
     """
-    given = _shaped(name, value, shape, "real numbers")
-    if given.dtype.type in (np.float32, np.float64):
-        found: NDArray[np.floating] = given if given.dtype.isnative else given.astype(given.dtype.newbyteorder("="))
+    array = _shaped(name, value, shape, "real numbers")
+    if array.dtype.type in (np.float32, np.float64):
+        found: NDArray[np.floating] = array if array.dtype.isnative else array.astype(array.dtype.newbyteorder("="))
     else:
-        found = given.astype(np.float64)
-        if given.dtype.kind != "f" and not (found.astype(object) == given.astype(object)).all():
+        found = array.astype(np.float64)
+        if array.dtype.kind != "f" and not (found.astype(object) == array.astype(object)).all():
             raise ValueError(f"{name} holds integers that float64 cannot hold exactly: they are above 2**53")
     if finite and not np.isfinite(found).all():
         place = np.argwhere(~np.isfinite(found))[0]
@@ -318,21 +318,21 @@ def whole_array(
         ...
     ValueError: materials[1] must be an integer 1 … 255, not 300
     """
-    given = _shaped(name, value, shape, "integers")
+    array = _shaped(name, value, shape, "integers")
     limits = np.iinfo(dtype)
-    if given.dtype == dtype and low <= limits.min and high >= limits.max:
-        return given
-    if not given.size or (given.dtype.kind in "iu" and given.min() >= low and given.max() <= high):
-        return given.astype(dtype, copy=False)
-    allowed = (given >= low) & (given <= high)  # NaN compares false
-    if given.dtype.kind == "f":
+    if array.dtype == dtype and low <= limits.min and high >= limits.max:
+        return array
+    if not array.size or (array.dtype.kind in "iu" and array.min() >= low and array.max() <= high):
+        return array.astype(dtype, copy=False)
+    allowed = (array >= low) & (array <= high)  # NaN compares false
+    if array.dtype.kind == "f":
         with np.errstate(invalid="ignore"):
-            allowed &= np.floor(given) == given
+            allowed &= np.floor(array) == array
     if not allowed.all():
         place = np.argwhere(~allowed)[0]
         where = f"{name}[{', '.join(map(str, place))}]"
-        raise ValueError(f"{where} must be an integer {low} … {high}, not {given[tuple(place)]}")
-    return given.astype(dtype)
+        raise ValueError(f"{where} must be an integer {low} … {high}, not {array[tuple(place)]}")
+    return array.astype(dtype)
 
 
 def shown(value: object) -> str:

@@ -110,11 +110,11 @@ def load(
     if not isinstance(path, (str, Path)):
         raise TypeError(f"path must be a string or a Path, not {arguments.shown(path)}")
     path = Path(path)
-    given = _checked(up=up, unit=unit, time=time, animation=animation, variants=variants)
+    chosen = _checked(up=up, unit=unit, time=time, animation=animation, variants=variants)
     allow_outside = arguments.flag("allow_outside", allow_outside)
     suffix = _suffix(path)
     module, name, options_of = _LOADERS[suffix]
-    options: dict[str, object] = {option: value for option, value in given.items() if option in options_of}
+    options: dict[str, object] = {option: value for option, value in chosen.items() if option in options_of}
     if "allow_outside" in options_of:
         options["allow_outside"] = allow_outside
     try:
@@ -123,7 +123,7 @@ def load(
         raise DoesNotFitError(f"{path}: {error}") from None
     ignored = tuple(
         SceneWarning("ignored-option", _WHY_IGNORED[option].format(suffix[1:]))
-        for option in given
+        for option in chosen
         if option not in options_of
     )
     return replace(scene, warnings=scene.warnings + ignored) if ignored else scene
@@ -133,20 +133,20 @@ def _checked(
     *, up: object, unit: object, time: object, animation: object, variants: Sequence[str]
 ) -> dict[str, object]:
     """Return the options that are given, checked and converted."""
-    given: dict[str, object] = {}
+    chosen: dict[str, object] = {}
     if up is not None:
-        given["up"] = arguments.choice("up", up, UP_AXES)
+        chosen["up"] = arguments.choice("up", up, UP_AXES)
     if unit is not None:
-        given["unit"] = arguments.real("unit", unit, above=0)
+        chosen["unit"] = arguments.real("unit", unit, above=0)
     if time is not None:
-        given["time"] = arguments.real("time", time)
+        chosen["time"] = arguments.real("time", time)
     if animation is not None:
-        given["animation"] = arguments.text("animation", animation)
+        chosen["animation"] = arguments.text("animation", animation)
     if isinstance(variants, str):
         raise TypeError(f"variants must be a sequence of strings, not a string: pass ({variants!r},)")
     if variants:
-        given["variants"] = tuple(arguments.text(f"variants[{index}]", one) for index, one in enumerate(variants))
-    return given
+        chosen["variants"] = tuple(arguments.text(f"variants[{index}]", one) for index, one in enumerate(variants))
+    return chosen
 
 
 def _suffix(path: Path) -> str:

@@ -168,7 +168,7 @@ class BlockVoxelizer:
             The sum of the tallies of all squares, whichever process made them.
         """
         result = self._native.report(np.ascontiguousarray(tallies, np.int64))
-        return VoxelizationReport(*self._parts.told(result), result.seconds)
+        return VoxelizationReport(*self._parts.described(result), result.seconds)
 
 
 def voxelize_in_blocks(

@@ -57,7 +57,7 @@ def dominant_objects(scene: Scene, voxels: int, geometry: Geometry) -> tuple[tup
     if len(owners) < 2:
         return (), 0.0
     order = np.argsort(-(high - low).max(axis=1), kind="stable")
-    # Of the objects from each place in that order on.
+    # Row k bounds the objects from place k of that order on.
     lowest = np.minimum.accumulate(low[order][::-1], axis=0)[::-1]
     highest = np.maximum.accumulate(high[order][::-1], axis=0)[::-1]
     widths = (highest - lowest).max(axis=1)

@@ -106,7 +106,7 @@ class SceneParts:
             )
         self.add(_MESH, self.to_grid(transform), material, self._mesh_index[id(key)])
 
-    def told(self, result: _native.Voxelized) -> tuple[tuple[ObjectReport, ...], tuple[SceneWarning, ...]]:
+    def described(self, result: _native.Voxelized) -> tuple[tuple[ObjectReport, ...], tuple[SceneWarning, ...]]:
         """Return the report of each object, and the warnings, from what the native voxelizer says."""
         shown = [self._geometry == "collider" or not item.hidden for item in self.scene.objects]
         objects = tuple(

@@ -84,7 +84,7 @@ def voxelize(
         result = _native.voxelize(**parts.native_arguments(), fill=fill, threads=threads)
     except _native.OutOfRangeError as error:
         raise unreachable(scene, int(error.args[0])) from None
-    return Voxelization(voxels_of(grid.depth, result), *parts.told(result), result.seconds)
+    return Voxelization(voxels_of(grid.depth, result), *parts.described(result), result.seconds)
 
 
 def voxels_of(depth: int, result: _native.Voxelized | _native.VoxelBlock) -> Voxels:

@@ -1,4 +1,4 @@
-"""Errors of the front door."""
+"""Errors of the public interface."""
 
 
 class ToolError(Exception):

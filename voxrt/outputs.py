@@ -32,6 +32,19 @@ def check_folder(folder: Path) -> None:
         raise OutputError(f"{folder}: no permission to write in {nearest}; name another folder")
 
 
+def check_file(path: Path) -> None:
+    """Refuse a file that cannot be written, before any work is done for it.
+
+    Raises
+    ------
+    OutputError
+        Its folder cannot be written to, or `path` is a folder.
+    """
+    check_folder(path.parent)
+    if path.is_dir():
+        raise OutputError(f"{path}: is a folder; name a file")
+
+
 @contextmanager
 def writing(target: Path) -> Iterator[None]:
     """Make the folder of an output, and say of an error of the operating system which output it hit.

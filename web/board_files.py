@@ -27,6 +27,7 @@ from voxrt.board.scene import Scene
 from voxrt.boards.beam import SCREEN, configuration_of
 from voxrt.boards.bitstream import board_names, pack, read_board
 from voxrt.octree.camera import Camera, Lighting
+from voxrt.octree.words import EMPTY
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
 
 SCALES = 3
 _CAMERA = Camera((0, 0, 0), (0, 0, 0), (0, 0, 0), (0, 0, 0))
-_SCENE = Scene("", 1, np.array([0xFFFFFF00], np.uint32), np.zeros((256, 3), np.uint8), np.zeros(256, np.bool_))
+_SCENE = Scene("", 1, np.array([EMPTY], np.uint32), np.zeros((256, 3), np.uint8), np.zeros(256, np.bool_))
 # Sets the address of block RAM WID, in bits 11 and above; writes 256 frames of 9 bytes, and their checksum.
 _BLOCK_RAM = re.compile(rb"\xf6\x00\x00\x00(....)\xb2\xd0\x01\x00(?=.{2306})", re.DOTALL)
 

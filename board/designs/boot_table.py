@@ -8,19 +8,19 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from voxrt.octree._native import encoded_rows
 
-from ..register_writes import camera_writes, lighting_writes, material_rows, register_writes
-from ..registers import MATERIALS
+from voxrt.board.register_writes import camera_writes, lighting_writes, material_rows, register_writes
+from voxrt.board.registers import MATERIALS
+from voxrt.octree._native import encoded_rows
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from numpy.typing import NDArray
 
-    from ..register_writes import Writes
-    from ..scene import Scene
-    from ..view import Camera, Lighting
+    from voxrt.board.register_writes import Writes
+    from voxrt.board.scene import Scene
+    from voxrt.board.view import Camera, Lighting
 
 TABLE_WORDS = 4096
 CAMERAS_WORD = 2048

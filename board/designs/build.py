@@ -18,8 +18,8 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .base_design import base_contents, find_slices
-from .multiplier_registers import use_multiplier_registers
+from voxrt.board.designs.base_design import base_contents, find_slices
+from voxrt.board.designs.multiplier_registers import use_multiplier_registers
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

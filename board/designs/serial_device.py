@@ -15,23 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..device import Counters, Frame, Identity
-from ..errors import DeviceError, Refused
-from ..register_writes import (
-    PROBLEMS,
-    camera_writes,
-    decode_fields,
-    encode_fields,
-    lighting_writes,
-    material_rows,
-    register_writes,
-    tell_problems,
-)
-from ..registers import MATERIALS, REGISTERS
-from ..scene import Scene, check_memory, octree_span
-from ..scene_memory import LoadedScene
-from ..view import FEATURES, refit
-from .boot_table import (
+from voxrt.board.designs.boot_table import (
     BOARD_REGISTERS,
     CAMERA_WORDS,
     CAMERAS,
@@ -46,17 +30,34 @@ from .boot_table import (
     TURN,
     encode_list,
 )
+from voxrt.board.device import Counters, Frame, Identity
+from voxrt.board.errors import DeviceError, Refused
+from voxrt.board.register_writes import (
+    PROBLEMS,
+    camera_writes,
+    decode_fields,
+    encode_fields,
+    lighting_writes,
+    material_rows,
+    register_writes,
+    tell_problems,
+)
+from voxrt.board.registers import MATERIALS, REGISTERS
+from voxrt.board.scene import Scene, check_memory, octree_span
+from voxrt.board.scene_memory import LoadedScene
+from voxrt.board.view import FEATURES, refit
+from voxrt.octree.words import move_pointers
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
-    from ..device import Device
-    from ..frame_drop import FrameDrop
-    from ..register_writes import Writes
-    from ..view import Camera, Lighting, View
-    from .serial_link import SerialLink
+    from voxrt.board.designs.serial_link import SerialLink
+    from voxrt.board.device import Device
+    from voxrt.board.frame_drop import FrameDrop
+    from voxrt.board.register_writes import Writes
+    from voxrt.board.view import Camera, Lighting, View
 
 _BOARD = int.from_bytes(b"VXBD", "big")
 _CORE = int.from_bytes(b"VXRT", "big")
@@ -145,7 +146,7 @@ class SerialDevice:
             if end <= len(words):
                 break
             more = self.read_memory(start, root + end - start)
-            words = np.concatenate([words, np.where(more >> 31 == 0, more - np.uint32(root), more)])
+            words = np.concatenate([words, move_pointers(more, -root)])
             end = octree_span(words, 0, depth)[1]
         try:
             words = words[: octree_span(words, 0, depth)[1]]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from ..errors import DeviceError
+from voxrt.board.errors import DeviceError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -6,18 +6,23 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
 from voxrt.board.errors import DeviceError
-from voxrt.board.external_memory import WORDS_BEFORE, ExternalMemory
 from voxrt.board.register_device import RegisterDevice
 from voxrt.sim.errors import NoSuchConfigurationError
 from voxrt.sim.verilated import import_verilated
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
+
+    from voxrt.board.register_writes import Writes
 
 _FRAME_LIMIT = 4095
 _PAUSE_CLOCKS = 1 << 15
 _PIXEL_SECONDS = 1e-3
+_WORDS_BEFORE = 7
 
 
 def open_rtl(config: str = "lit") -> RegisterDevice:
@@ -35,33 +40,49 @@ def open_rtl(config: str = "lit") -> RegisterDevice:
         raise NoSuchConfigurationError(config, module.CORES)
     core = module.Core(config)
     pause = partial(core.run, _PAUSE_CLOCKS)
-    memory = _external_memory(core) if core.cached else _MemoryPort(core)
+    memory = _ExternalMemory(core) if core.cached else _MemoryPort(core)
     return RegisterDevice(
-        f"simulated ray tracer {config}", core, memory, _Stream(core), pause, pixel_seconds=_PIXEL_SECONDS
+        f"simulated ray tracer {config}", _Registers(core), memory, _Stream(core), pause, pixel_seconds=_PIXEL_SECONDS
     )
 
 
-class _Buffer(np.ndarray):
-    """What :class:`ExternalMemory` needs of a buffer; there are no caches of a processor."""
+class _Registers:
+    def __init__(self, core: Any) -> None:  # noqa: ANN401 - the native module may be absent
+        self._core = core
 
-    physical_address = 0x10000000
+    def read(self, offsets: Sequence[int]) -> Sequence[int]:
+        return [int(self._core.read(offset)) for offset in offsets]
 
-    def flush(self) -> None: ...
+    def write(self, writes: Writes) -> None:
+        for start, values in writes:
+            for place, value in enumerate(values):
+                self._core.write(start + 4 * place, value)
 
-    def invalidate(self) -> None: ...
 
-    def freebuffer(self) -> None: ...
+class _ExternalMemory:
+    """The words of an octree in external memory: word 0 is the last of a line, so blocks are lines."""
 
+    base = 0x10000000
 
-def _external_memory(core: Any) -> ExternalMemory:  # noqa: ANN401 - the native module may be absent
-    # Pages that nothing was written to cost no memory.
-    buffer = np.zeros(WORDS_BEFORE + core.memory_words, dtype=np.uint32).view(_Buffer)
-    core.map_external(buffer.physical_address, buffer)
-    return ExternalMemory(buffer)
+    def __init__(self, core: Any) -> None:  # noqa: ANN401
+        # Pages that nothing was written to cost no memory.
+        self._words = np.zeros(_WORDS_BEFORE + core.memory_words, dtype=np.uint32)
+        core.map_external(self.base, self._words)
+
+    def __len__(self) -> int:
+        return len(self._words) - _WORDS_BEFORE
+
+    def __getitem__(self, words: slice) -> NDArray[np.uint32]:
+        return self._words[_WORDS_BEFORE + words.start : _WORDS_BEFORE + words.stop].copy()
+
+    def __setitem__(self, words: slice, values: NDArray[np.uint32]) -> None:
+        self._words[_WORDS_BEFORE + words.start : _WORDS_BEFORE + words.stop] = values
 
 
 class _MemoryPort:
     """The words of the scene memory, read and written through the memory port."""
+
+    base = None
 
     def __init__(self, core: Any) -> None:  # noqa: ANN401 - the native module may be absent
         self._core = core

@@ -7,16 +7,19 @@ import time
 from typing import TYPE_CHECKING
 
 import numpy as np
+
 from voxrt.board.device import Counters, Frame, Identity
 from voxrt.board.errors import DeviceError, FrameDropped, TooSlow
-from voxrt.board.scene import EMPTY_LEAF, octree_span
+from voxrt.board.scene import octree_span
 from voxrt.board.view import FEATURES
+from voxrt.octree.words import EMPTY, move_pointers
 from voxrt.sim import _model
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import NDArray
+
     from voxrt.board.frame_drop import FrameDrop
     from voxrt.board.view import View
 
@@ -39,7 +42,7 @@ class _Memory:
         self.mirrors = np.zeros(256, dtype=np.uint8)
         self.root, self.depth = 0, 1
         self._words = np.zeros(capacity, dtype=np.uint32)
-        self._words[0] = EMPTY_LEAF
+        self._words[0] = EMPTY
 
     def write(self, address: int, words: NDArray[np.uint32]) -> None:
         end = self._check(address, len(words))
@@ -53,7 +56,7 @@ class _Memory:
         """Return the selected octree, moved so that its root is word 0 and its first block follows."""
         first, end = octree_span(self._words, self.root, self.depth)
         words = np.concatenate([self._words[self.root : self.root + 1], self._words[first:end]])
-        return np.where(words >> 31 == 0, words - np.uint32(first - 1), words)
+        return move_pointers(words, 1 - first)
 
     def _check(self, address: int, count: int) -> int:
         if not 0 <= address <= address + count <= self.capacity:

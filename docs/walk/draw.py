@@ -35,16 +35,18 @@ from flat_world import (
     X_COLOUR,
     Y_COLOUR,
     framed,
+    label,
     leaves,
     point,
     ray,
-    said,
     square,
     world,
 )
 from matplotlib import pyplot as plt
 from matplotlib.patches import FancyArrowPatch, Rectangle
-from quadtree import AXES, UNIT, Reading, crossing_time, is_leaf
+from quadtree import AXES, UNIT, Reading, crossing_time
+
+from voxrt.octree.words import EMPTY, is_leaf, material
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -100,9 +102,8 @@ def draw_tree() -> Figure:
     for block, (x, y) in spots.items():
         for child in range(4):
             word = WORDS[block + child]
-            material = word & 0xFF if is_leaf(word) else -1
             corner = (x - 0.5 + 0.5 * (child & 1), y - 0.5 + 0.5 * (child >> 1))
-            colour = "#eeeeee" if material < 0 else MATERIALS.get(material, "white")
+            colour = MATERIALS.get(material(word), "white") if is_leaf(word) else "#eeeeee"
             address = block + child
             square(place, *corner, 0.5, facecolor=colour, edgecolor="#777777", linewidth=0.8)
             if address in read:
@@ -218,12 +219,12 @@ def draw_leaving() -> Figure:
         colour = LINE_COLOURS[axis]
         (place.axvline if axis == 0 else place.axhline)(line, color=colour, linewidth=1.6, zorder=3)
         place.plot(*point(time), "o", color=colour, markersize=8, zorder=7)
-    place.text(8.3, 5.8, f"x = 8:  T = {crossing_time(ORIGIN, DIRECTION, 0, 8)}", **said(X_COLOUR))
-    place.text(8.3, 4.25, f"y = 4:  T = {crossing_time(ORIGIN, DIRECTION, 1, 4)}, the smaller one", **said(Y_COLOUR))
+    place.text(8.3, 5.8, f"x = 8:  T = {crossing_time(ORIGIN, DIRECTION, 0, 8)}", **label(X_COLOUR))
+    place.text(8.3, 4.25, f"y = 4:  T = {crossing_time(ORIGIN, DIRECTION, 1, 4)}, the smaller one", **label(Y_COLOUR))
     entered = point(reading.key[0])
     place.plot(*entered, "o", color="#555555", markersize=8, zorder=7)
     place.annotate(
-        f"entered at T = {reading.key[0]}", entered, (0.2, 5.1), arrowprops={"arrowstyle": "-", "lw": 0.7}, **said(RAY)
+        f"entered at T = {reading.key[0]}", entered, (0.2, 5.1), arrowprops={"arrowstyle": "-", "lw": 0.7}, **label(RAY)
     )
     place.set(xticks=range(0, 13, 4), yticks=(0, 4))
     return figure
@@ -234,7 +235,7 @@ def draw_stack() -> Figure:
     figure, places = plt.subplots(2, 2, figsize=(WIDTH, 7.0), width_ratios=(1.05, 1))
     steps = [(READINGS[5], READINGS[6]), (READINGS[7], READINGS[8])]
     windows = (((3.6, 3.6), (8.4, 8.4)), ((0, 0), (16, 16)))
-    for (place, told), (before, after), (low, high) in zip(places, steps, windows, strict=True):
+    for (place, panel), (before, after), (low, high) in zip(places, steps, windows, strict=True):
         world(place, low, high)
         size = 1 << before.level
         square(place, *before.corner, size, facecolor=VISITED, edgecolor="#999999", zorder=1)
@@ -252,13 +253,13 @@ def draw_stack() -> Figure:
         place.plot(*point(after.key[0]), "o", color=X_COLOUR, markersize=8, zorder=7)
         place.set(xticks=range(4 if low[0] else 0, int(high[0]) + 1, 1 if low[0] else 4))
         place.set(yticks=range(4 if low[0] else 0, int(high[0]) + 1, 1 if low[0] else 4))
-        told.axis("off")
-        told.set(xlim=(0, 10), ylim=(0, 10))
-        _tell_stack(told, before, after)
+        panel.axis("off")
+        panel.set(xlim=(0, 10), ylim=(0, 10))
+        _draw_stack(panel, before, after)
     return figure
 
 
-def _tell_stack(told: Axes, before: Reading, after: Reading) -> None:
+def _draw_stack(panel: Axes, before: Reading, after: Reading) -> None:
     old, step = before.corner[0], 1 << before.level
     new = old + step
     changed = after.level
@@ -270,17 +271,17 @@ def _tell_stack(told: Axes, before: Reading, after: Reading) -> None:
         (f"changed          {old ^ new:04b}", X_COLOUR),
     )
     for number, (line, colour) in enumerate(lines):
-        told.text(0, 9.2 - 0.95 * number, line, color=colour, **mono)
-    told.text(0, 5.0, f"highest changed bit: {changed}", fontsize=11, color=X_COLOUR)
-    told.text(0, 4.0, "stack", fontsize=11, weight="bold")
+        panel.text(0, 9.2 - 0.95 * number, line, color=colour, **mono)
+    panel.text(0, 5.0, f"highest changed bit: {changed}", fontsize=11, color=X_COLOUR)
+    panel.text(0, 4.0, "stack", fontsize=11, weight="bold")
     shown = sorted((level, block) for level, block in before.stack.items() if level >= before.level)
     for number, (level, block) in enumerate(reversed(shown)):
         y = 3.0 - 0.9 * number
         used = level == changed
         if used:
-            told.add_patch(Rectangle((-0.1, y - 0.25), 9.9, 0.85, facecolor="#fde9a8", edgecolor="none"))
+            panel.add_patch(Rectangle((-0.1, y - 0.25), 9.9, 0.85, facecolor="#fde9a8", edgecolor="none"))
         arrow = f"  read word {after.address}" if used else ""
-        told.text(0, y, f"level {level}: block {block}{arrow}", **mono)
+        panel.text(0, y, f"level {level}: block {block}{arrow}", **mono)
 
 
 def draw_tie() -> Figure:
@@ -339,8 +340,8 @@ def draw_rounding() -> Figure:
     ray(place, end, begin)
     wrong = np.array([[float(part) for part in spot] for spot in follow_rounded(4)])
     place.plot(wrong[:, 0], wrong[:, 1], "o--", color=X_COLOUR, markersize=6, linewidth=1.5, zorder=6)
-    place.text(0.3, 5.6, "exact:\nhits the first block", **said(RAY))
-    place.text(8.3, 5.0, "rounded to 1/4 cell:\nmisses the first block", **said(X_COLOUR))
+    place.text(0.3, 5.6, "exact:\nhits the first block", **label(RAY))
+    place.text(8.3, 5.0, "rounded to 1/4 cell:\nmisses the first block", **label(X_COLOUR))
     place.set(xticks=range(0, 15, 4), yticks=range(4, 11, 4))
     return figure
 
@@ -353,7 +354,7 @@ def draw_walk() -> Figure:
         if not is_leaf(reading.word):
             continue
         side = 1 << reading.level
-        if reading.word == quadtree.LEAF:
+        if reading.word == EMPTY:
             square(place, *reading.corner, side, facecolor=VISITED, edgecolor="#777777", linewidth=0.8, zorder=1)
         x, y = reading.corner
         place.text(
@@ -374,7 +375,7 @@ def flat_table() -> str:
         side = 1 << reading.level
         what = f"pointer to {reading.word}"
         if is_leaf(reading.word):
-            what = f"leaf, material {reading.word & 0xFF}" if reading.word & 0xFF else "leaf, empty"
+            what = "leaf, empty" if reading.word == EMPTY else f"leaf, material {material(reading.word)}"
         entered = f"{reading.key[0]}, {'xy'[reading.key[1]]}" if reading.key[0] else "start"
         where = f"x {x} to {x + side}, y {y} to {y + side}"
         lines.append(f"| {number} | {reading.address} | {what} | {where} | {entered} | {reading.level} |")

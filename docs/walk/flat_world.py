@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 
 import quadtree
 from matplotlib.patches import FancyArrowPatch, Rectangle
-from quadtree import UNIT, is_leaf
+from quadtree import UNIT
+
+from voxrt.octree.words import is_leaf, material
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -52,7 +54,7 @@ def leaves() -> list[tuple[int, int, int, int]]:
 
     def walk(word: int, x: int, y: int, level: int) -> None:
         if is_leaf(word):
-            found.append((x, y, level, word & 0xFF))
+            found.append((x, y, level, material(word)))
             return
         half = 1 << level - 1
         for child in range(4):
@@ -76,8 +78,8 @@ def square(place: Axes, x: float, y: float, side: float, **style: object) -> Non
 
 def world(place: Axes, low: tuple[float, float] = (0, 0), high: tuple[float, float] = (SIDE, SIDE)) -> None:
     """Draw the leaves in a window of the world."""
-    for x, y, level, material in leaves():
-        square(place, x, y, 1 << level, facecolor=MATERIALS.get(material, "white"), edgecolor="#999999", linewidth=0.8)
+    for x, y, level, kind in leaves():
+        square(place, x, y, 1 << level, facecolor=MATERIALS.get(kind, "white"), edgecolor="#999999", linewidth=0.8)
     margin = 0.02 * (high[0] - low[0])
     place.set(xlim=(low[0] - margin, high[0] + margin), ylim=(low[1] - margin, high[1] + margin), aspect="equal")
     place.tick_params(labelsize=9, length=0)
@@ -99,7 +101,7 @@ def framed(place: Axes, x: float, y: float, side: float, *, colour: str = HIGHLI
     square(place, x, y, side, facecolor="none", edgecolor=colour, linewidth=width, zorder=6)
 
 
-def said(colour: str) -> dict[str, object]:
+def label(colour: str) -> dict[str, object]:
     """Give the style of a text that stands on a drawing."""
     box = {"facecolor": "white", "alpha": 0.9, "edgecolor": "none", "pad": 1.5}
     return {"fontsize": 11, "color": colour, "bbox": box, "zorder": 8}

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from voxrt.octree.words import EMPTY, is_leaf, leaf
+
 UNIT = 16  # positions are counted in sixteenths of a cell
 AXES = (0, 1)  # x, y
-LEAF = 0xFFFFFF00  # a leaf of material m is the word LEAF + m; all smaller words are pointers
-EMPTY = 0
+SPACE = 0  # the material of empty cells
 
 
 @dataclass(frozen=True)
@@ -40,11 +41,6 @@ class Reading:
     stack: dict[int, int]
 
 
-def is_leaf(word: int) -> bool:
-    """Say whether a word is a material and not a pointer."""
-    return word >= LEAF
-
-
 def crossing_time(origin: tuple[int, int], direction: tuple[int, int], axis: int, line: int) -> int:
     """Give the whole number T at which the ray crosses a grid line of an axis (x = line, or y = line)."""
     other = 1 - axis
@@ -66,13 +62,13 @@ def build(rows: list[str]) -> list[int]:
         Word 0 is the root. Blocks of four words follow, breadth first: lower left, lower right, upper left, upper
         right.
     """
-    cells = [[int(cell) if cell.isdigit() else EMPTY for cell in row] for row in reversed(rows)]
+    cells = [[int(cell) if cell.isdigit() else SPACE for cell in row] for row in reversed(rows)]
     words = [0]
     waiting = [(0, 0, 0, len(cells))]  # squares without a word yet: address, lowest corner, side
     for address, x, y, side in waiting:
         materials = {cells[row][column] for row in range(y, y + side) for column in range(x, x + side)}
         if len(materials) == 1:
-            words[address] = LEAF + materials.pop()
+            words[address] = leaf(materials.pop())
             continue
         block = len(words)
         words[address] = block
@@ -133,7 +129,7 @@ def follow(words: list[int], depth: int, origin: tuple[int, int], direction: tup
             address = word + upper[0] + 2 * upper[1]
             continue
 
-        if word != LEAF + EMPTY:
+        if word != EMPTY:
             return readings
 
         # Leave: the line that comes first is the new key.

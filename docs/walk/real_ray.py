@@ -59,7 +59,7 @@ def draw(path: sim.RayPath, picture: np.ndarray) -> Figure:
     place = figure.add_subplot(1, 2, 2, projection="3d")
     found = [reading for reading in path.readings if reading.is_leaf]
     for reading in found:
-        solid = reading.word & 255
+        solid = reading.material
         style = {"color": "#d05030" if solid else "#4f86c0", "linewidth": 2.2 if solid else 0.9}
         for edge in box_edges(reading.corner, reading.end):
             place.plot(*edge.T, **style)
@@ -83,7 +83,7 @@ def table(rom: voxrt.Rom, path: sim.RayPath) -> str:
     for number, reading in enumerate(path.readings, 1):
         what = f"pointer to {reading.word:#x}"
         if reading.is_leaf:
-            what = f"leaf, {rom.materials[reading.word & 0xFF].name}" if reading.word & 0xFF else "leaf, empty"
+            what = f"leaf, {rom.materials[reading.material].name}" if reading.material else "leaf, empty"
         corner = ", ".join(map(str, reading.corner))
         entered = f"{reading.time:,} {'xyz'[reading.axis]}" if reading.axis < 3 else "start"
         lines.append(f"| {number} | {reading.address:#x} | {what} | {corner} | {1 << reading.level} | {entered} |")

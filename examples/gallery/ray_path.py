@@ -22,7 +22,7 @@ size, pixel = (320, 240), (118, 88)
 camera = voxrt.aim_camera(rom, size)
 path = sim.follow_pixel(rom.octree, camera, size, pixel)
 for number, reading in enumerate(path.readings, 1):
-    is_what = f"material {reading.word & 255}" if reading.is_leaf else f"pointer to {reading.word:#x}"
+    is_what = f"material {reading.material}" if reading.is_leaf else f"pointer to {reading.word:#x}"
     print(
         f"{number:3d}  word {reading.address:#5x}  {1 << reading.level:3d} voxels at {reading.corner!s:14s} {is_what}"
     )
@@ -40,7 +40,7 @@ left.imshow(picture)
 left.axis("off")
 leaves = [reading for reading in path.readings if reading.is_leaf]
 for reading in leaves:
-    colour = "#d05030" if reading.word & 255 else "#a8c8e8"
+    colour = "#d05030" if reading.material else "#a8c8e8"
     side = 1 << reading.level
     right.add_patch(
         plt.Rectangle(reading.corner[2:0:-1], side, side, facecolor=colour, edgecolor="k", linewidth=0.6, alpha=0.5)

@@ -1,13 +1,26 @@
-"""What a picture of an octree needs besides its words: a camera and the lighting, in the grid frame.
+"""What a picture of an octree needs besides its words: a camera and the lighting, in the grid frame."""
 
-Needs NumPy and Python 3.10 alone: the boards' own package takes this folder too.
-"""
-
-from .aim import FIELD_OF_VIEW, THREE_QUARTER, eye_that_sees, focal_length, frame_points, frame_world, look_at, refit
-from .camera import DIRECTION_LIMIT, POSITION_UNITS, Camera, Triple, camera_from_registers, pixel_directions
-from .lighting import BOUNCE_LIMIT, FACES, FEATURES, PLAIN_LIGHTING, Faces, Lighting, Shading
-from .lod import LOD_SCALE_BITS, lod_scale
-from .samples import SAMPLES, average_cut_out, average_samples, sample_cameras
+from voxrt.octree.camera.aim import (
+    FIELD_OF_VIEW,
+    THREE_QUARTER,
+    eye_that_sees,
+    focal_length,
+    frame_points,
+    frame_world,
+    look_at,
+    refit,
+)
+from voxrt.octree.camera.camera import (
+    DIRECTION_LIMIT,
+    POSITION_UNITS,
+    Camera,
+    Triple,
+    camera_from_registers,
+    pixel_directions,
+)
+from voxrt.octree.camera.lighting import BOUNCE_LIMIT, FACES, FEATURES, PLAIN_LIGHTING, Faces, Lighting, Shading
+from voxrt.octree.camera.lod import LOD_SCALE_BITS, lod_scale
+from voxrt.octree.camera.samples import SAMPLES, average_cut_out, average_samples, sample_cameras
 
 __all__ = [
     "BOUNCE_LIMIT",

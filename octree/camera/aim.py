@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .camera import DIRECTION_LIMIT, POSITION_UNITS, REGISTER_LIMIT, Camera, camera_from_registers
+from voxrt.octree.camera.camera import DIRECTION_LIMIT, POSITION_UNITS, REGISTER_LIMIT, Camera, camera_from_registers
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

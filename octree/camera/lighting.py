@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
-from .camera import Triple  # noqa: TC001 - manifests are read by the annotations of this class
+from voxrt.octree.camera.camera import Triple  # noqa: TC001 - manifests are read by the annotations of this class
 
 BOUNCE_LIMIT = 15
 """The most reflections per ray."""

@@ -7,7 +7,7 @@ from math import isqrt
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .camera import Camera
+    from voxrt.octree.camera.camera import Camera
 
 LOD_SCALE_BITS = 20
 

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .camera import DIRECTION_LIMIT, REGISTER_LIMIT, Triple
+from voxrt.octree.camera.camera import DIRECTION_LIMIT, REGISTER_LIMIT, Triple
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from numpy.typing import NDArray
 
-    from .camera import Camera
+    from voxrt.octree.camera.camera import Camera
 
 SAMPLES = (1, 2, 4)
 """Samples per pixel on each axis of the picture."""

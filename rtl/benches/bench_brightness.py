@@ -78,10 +78,10 @@ def seen(dut):
     sums, number = number % (1 << 3 * SUM), number >> 3 * SUM
     whole, number = number % (1 << 42), number >> 42
     part, number = number % (1 << 40), number >> 40
-    given = (dut.pixel_o.value.to_unsigned(), number >> 1, number & 1)
+    request = (dut.pixel_o.value.to_unsigned(), number >> 1, number & 1)
     if not number >> 1:
-        return given
-    return (*given, Fraction(part, whole), sums) if number & 1 else (*given, Fraction(part, whole))
+        return request
+    return (*request, Fraction(part, whole), sums) if number & 1 else (*request, Fraction(part, whole))
 
 
 def begin(dut):

@@ -63,9 +63,9 @@ async def frames_are_exact(dut, latency, jitter, stalls):
     np.testing.assert_array_equal(await core.trace(), seen(voxels))
     assert await core.read("configuration", "cached") == 1
     words, requests = await core.read("words_read", "value"), await core.read("word_requests", "value")
-    lines, asked = await core.read("lines_read", "value"), await core.read("line_requests", "value")
+    lines, requested = await core.read("lines_read", "value"), await core.read("line_requests", "value")
     assert 0 < words <= requests
-    assert 0 < lines <= asked <= requests + words
+    assert 0 < lines <= requested <= requests + words
     assert await core.read("status", "bus_error") == await core.read("status", "bus_timeout") == 0
 
 

@@ -25,7 +25,7 @@ class Memory:
         ports = [StructPort(dut.axi_o[p], dut.axi_i[p]) for p in range(2)]
         self.bus = AxiMemory(ports, random.Random(random.randrange(1 << 30)), BASE)
         self.fill()
-        self.asked = [[None] * SLOTS for _ in range(self.lanes)]  # By slot: the address that a ray waits for.
+        self.requests = [[None] * SLOTS for _ in range(self.lanes)]  # By slot: the address that a ray waits for.
         self.clock_number = 0
         self.got = 0
         self.answers = []
@@ -70,24 +70,24 @@ class Memory:
             slot = self.clock_number % SLOTS
             addresses, reads = [], 0
             for lane in range(self.lanes):
-                waits = self.asked[lane][slot]
+                waits = self.requests[lane][slot]
                 if waits is None and clock < clocks and not stop:
                     block = random.choice([-1, *range(hot), random.randrange(BLOCKS)])
                     waits = (block, 7 if block < 0 else random.randrange(8))
                 if clock >= clocks:
                     waits = None
                 else:
-                    self.asked[lane][slot] = waits
+                    self.requests[lane][slot] = waits
                 addresses.append(0 if waits is None else (waits[0] % (2 * BLOCKS)) << 3 | waits[1])
                 reads |= (waits is not None) << lane
             drive(self.dut, read_i=reads, address_i=addresses)
             history.append(
-                (slot, [self.asked[lane][slot] if reads >> lane & 1 else None for lane in range(self.lanes)])
+                (slot, [self.requests[lane][slot] if reads >> lane & 1 else None for lane in range(self.lanes)])
             )
             await self.clock()
             if len(history) > CLOCKS:
-                then, asked = history.pop(0)
-                for lane, place in enumerate(asked):
+                then, requests = history.pop(0)
+                for lane, place in enumerate(requests):
                     if self.acks >> lane & 1:
                         assert place is not None, "an answer that nobody asked for"
                         word = encoded(kept_here(self.bus.words[1 + 8 * place[0] + place[1]]))
@@ -95,7 +95,7 @@ class Memory:
                             assert self.words[lane] == word
                         else:
                             assert self.words[lane] in (word, ERROR)
-                        self.asked[lane][then] = None
+                        self.requests[lane][then] = None
                         got += 1
         drive(self.dut, read_i=0)
         return got
@@ -103,7 +103,7 @@ class Memory:
     async def drain(self, limit=40000, *, check=True):
         """Let all rays have their words."""
         for _ in range(limit // 60):
-            if all(place is None for lane in self.asked for place in lane):
+            if all(place is None for lane in self.requests for place in lane):
                 return
             await self.read(60, stop=True, check=check)
         raise AssertionError("a ray waits for ever")
@@ -154,7 +154,7 @@ async def without_a_flush_lines_stay(dut):
     await memory.frame()
     for _ in range(2):
         before = len(memory.bus.addresses)
-        memory.asked = [[(0, slot % 8) for slot in range(SLOTS)] for _ in range(memory.lanes)]
+        memory.requests = [[(0, slot % 8) for slot in range(SLOTS)] for _ in range(memory.lanes)]
         await memory.drain()
         lines = len(memory.bus.addresses) - before
         await memory.frame()
@@ -170,7 +170,7 @@ async def reset_at_any_clock(dut):
     for _ in range(10):
         await memory.frame()
         await memory.read(random.randrange(1, 150))
-        memory.asked = [[None] * SLOTS for _ in range(memory.lanes)]
+        memory.requests = [[None] * SLOTS for _ in range(memory.lanes)]
         drive(dut, rst_ni=0, read_i=0)
         await memory.clock()
         drive(dut, rst_ni=1)

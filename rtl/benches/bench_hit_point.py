@@ -75,7 +75,7 @@ class Ring:
         self.dut, self.depth = dut, int(dut.MaxDepth.value)
         self.hits, self.takes = pace(hitting), pace(taking)
         self.stages = dict.fromkeys(STAGES)
-        self.wanted, self.given = [], 0
+        self.wanted, self.answers = [], 0
 
     async def run(self, clocks, *, hit=True):
         """Go on for so many clocks."""
@@ -100,7 +100,7 @@ class Ring:
                 wanted = self.wanted.pop(0)
                 assert HIT_POINT.unpack(dut.hit_point_o) == wanted.known | {"point": wanted.point}
                 assert int(dut.material_o.value) == wanted.material
-                self.given += 1
+                self.answers += 1
 
 
 QUIET = {"hit3_i": 0, "takes9_i": 0, "ready_i": 0}
@@ -116,7 +116,7 @@ async def hit_points(dut, hitting, taking):
         await ring.run(400)
         await ring.run(60, hit=False)
         assert not ring.wanted
-        assert ring.given > 10
+        assert ring.answers > 10
 
 
 @cocotb.test()

@@ -57,7 +57,7 @@ class Surroundings:
     def __init__(self, dut, words, shader, rays, hurry=0.1):
         self.dut, self.shader, self.hurry = dut, shader, hurry
         self.words = [encoded(int(word)) for word in words]
-        self.asked = deque([None] * (int(dut.MemoryClocks.value) - 1))
+        self.answers = deque([None] * (int(dut.MemoryClocks.value) - 1))
         self.coming, self.ordered, self.credits = deque((ray, 0) for ray in rays), deque(), SHADOW_RAYS
         self.rays, self.shadow_rays = deque(), deque()  # That wait.
         self.free_rows = list(range(ROWS))
@@ -143,10 +143,10 @@ class Surroundings:
     def answer(self, acknowledges):
         """Give a word of before, or none."""
         dut = self.dut
-        self.asked.append(None)
+        self.answers.append(None)
         if int(dut.mem_read_o.value):
-            self.asked[-1] = self.words[1 + dut.mem_address_o.value.to_unsigned()]
-        word = self.asked.popleft()
+            self.answers[-1] = self.words[1 + dut.mem_address_o.value.to_unsigned()]
+        word = self.answers.popleft()
         answers = word is not None and next(acknowledges)
         drive(dut, mem_ack_i=answers, mem_word_i=word if answers else random.randrange(1 << 10))
 

@@ -68,7 +68,7 @@ class Memory:
         With `writes` the port writes now and then: who asks two clocks later reads it, who asks before does not. For
         the port has a register: it accesses the memory a clock later, at the clock of `before`.
         """
-        dut, asked, answered, before = self.dut, [], 0, (None, False, 0)
+        dut, requests, answered, before = self.dut, [], 0, (None, False, 0)
         wants, accesses = pace(lanes), pace(port)
         hot = random.randrange(1 << BLOCK_BITS)
         for clock in range(clocks):
@@ -84,11 +84,11 @@ class Memory:
             drive(dut, access_word_i=word)
             await RisingEdge(dut.clk_i)
             if clock >= self.clocks:
-                answered += self.check(*asked.pop(0))
+                answered += self.check(*requests.pop(0))
             wanted = [self.words[1 + a] if bit else None for a, bit in zip(addresses, reads, strict=True)]
             accessed, written, value = before
             read = None if accessed is None or written else self.words[accessed]
-            asked.append((wanted, read, accessed is not None))
+            requests.append((wanted, read, accessed is not None))
             if written:
                 self.words[accessed] = kept(value)
             before = address, is_write, word

@@ -25,7 +25,7 @@ class Memory:
         self.dut = dut
         self.words = [random.randrange(1 << 10) for _ in range(WORDS)]
         self.likely = {"never": 0, "at_random": 0.5, "for_long": 0.9}[refuses]
-        self.asked = deque([None] * (int(dut.MemoryClocks.value) - 1))
+        self.addresses = deque([None] * (int(dut.MemoryClocks.value) - 1))
         self.refused = self.answered = 0
 
     async def clock(self):
@@ -33,8 +33,8 @@ class Memory:
         dut = self.dut
         await RisingEdge(dut.clk_i)
         asks = int(dut.read_o.value)
-        self.asked.append(1 + dut.read_address_o.value.to_unsigned() if asks else None)
-        address = self.asked.popleft()
+        self.addresses.append(1 + dut.read_address_o.value.to_unsigned() if asks else None)
+        address = self.addresses.popleft()
         gives = random.randrange(2) if address is None else random.random() >= self.likely
         if address is not None:
             self.answered += gives
@@ -112,5 +112,5 @@ async def reset_at_any_clock(dut):
             await ClockCycles(dut.clk_i, 1)
             assert not int(dut.valid_o.value)
             assert not int(dut.read_o.value)
-        memory.asked = deque([None] * len(memory.asked))
+        memory.addresses = deque([None] * len(memory.addresses))
         await find(dut, memory, ADDRESSES[random.choice(list(ADDRESSES))]())

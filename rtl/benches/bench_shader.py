@@ -32,7 +32,7 @@ def some_frame():
     return corner, right, line, random.randint(1, 9), random.randint(1, 7)
 
 
-def given(kind):
+def inputs_of(kind):
     """Make what voxrt_brightness may say: (packed, sums or None, part or None)."""
     whole = random.choice([1, 3, random.randint(1, 3 << SQUARE - 1)])
     part = random.randint(0, min(whole, (1 << SQUARE) - 1))
@@ -71,7 +71,7 @@ def some_pixels(frame, colours, flat, faces, kinds):
     for direction, first, line_end, last in line_by_line(frame):
         material = random.randrange(256)
         face = random.choice([axis for axis in range(3) if direction[axis]] + [FACE_NONE])
-        brightness, sums, part = given(random.choice(kinds))
+        brightness, sums, part = inputs_of(random.choice(kinds))
         items.append({"pixel_i": material << 2 | face, "brightness_i": brightness})
         own = sums or colours[material]
         if faces and not flat and face != FACE_NONE:

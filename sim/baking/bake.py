@@ -52,25 +52,10 @@ class BakedLight:
     _rows: NDArray[np.uint64]
 
     def memory(self, colours: int = MOST_COLOURS, *, threads: int = 0) -> Rom:
-        """Return the memory with baked colours.
+        """Return the memory with baked colours: the same voxels are solid, shown with ``Lighting(flat=True)``.
 
-        Parameters
-        ----------
-        colours
-            The most colours of the palette, 1 … 254. There are fewer where voxels that are not exposed, and mirrors,
-            need more than one material.
-        threads
-            Threads to use; 0 takes one per core. The result does not depend on it.
-
-        Returns
-        -------
-        Rom
-            The same voxels are solid. Shown flat, with ``Lighting(flat=True)``, they have their baked colours.
-
-        Raises
-        ------
-        TypeError, ValueError
-            An argument of the wrong type or out of range.
+        At most `colours` of them, 1 … 254; fewer where voxels that are not exposed, and mirrors, need more than one
+        material. TypeError or ValueError for other numbers.
         """
         colours = whole("colours", colours, 1, MOST_COLOURS)
         depth, surface = self.rom.octree.depth, self._surface
@@ -93,38 +78,10 @@ class BakedLight:
 def bake_light(
     rom: Rom, scene: Scene, daylight: Daylight | None = None, *, geometry: Geometry = "auto", threads: int = 0
 ) -> BakedLight:
-    """Find the light on the surface of a memory under a sun and a sky.
+    """Find the light on the surface of a memory under a sun and a sky; None takes the default ones.
 
-    Parameters
-    ----------
-    rom
-        The memory, with its place in the scene.
-    scene
-        The scene from which it was built: its triangles give the normals.
-    daylight
-        The sun and the sky; None for the default ones.
-    geometry
-        As for :func:`voxrt.voxelize.voxelize`.
-    threads
-        Threads to use; 0 takes one per core. The result does not depend on it.
-
-    Returns
-    -------
-    BakedLight
-        ``memory()`` makes the memory with these colours.
-
-    Raises
-    ------
-    TypeError, ValueError
-        An argument of the wrong type or range, or a memory whose place in the scene is not known.
-
-    Examples
-    --------
-    >>> import voxrt
-    >>> built = voxrt.build("examples/house.obj", depth=5)
-    >>> light = bake_light(built.rom, built.scene)
-    >>> light.memory().octree.depth, bool(light.sky.max() <= 1)
-    (5, True)
+    The memory knows its place in `scene`, from which it was built: the scene's triangles give the normals. `geometry`
+    is that of :func:`voxrt.voxelize.voxelize`. TypeError or ValueError for other arguments.
     """
     daylight = Daylight() if daylight is None else instance("daylight", daylight, Daylight)
     threads = whole("threads", threads, 0, 1024)

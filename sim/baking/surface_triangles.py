@@ -19,18 +19,9 @@ if TYPE_CHECKING:
 def surface_triangles(scene: Scene, grid: Grid, geometry: Geometry) -> tuple[NDArray[np.float64], NDArray[np.float32]]:
     """Return the triangles of all objects that are voxelized from their triangles (``src/bake/placed_triangles.h``).
 
-    Parameters
-    ----------
-    scene, grid, geometry
-        As :func:`voxrt.voxelize.voxelize` takes them.
-
-    Returns
-    -------
-    corners
-        float64, shape (T, 3, 3): voxels, grid frame.
-    normals
-        float32, shape (T, 3, 3): unit normals of the corners: the author's, turned to the triangle's side. Where the
-        mesh has none, they are smooth over edges with an angle below 45 degrees.
+    The corners are float64, shape (T, 3, 3): voxels, grid frame. The normals are float32, shape (T, 3, 3): unit normals
+    of the corners, the author's, turned to the triangle's side. Where the mesh has none, they are smooth over edges
+    with an angle below 45 degrees.
     """
     shown = [item for item in scene.objects if proxies(item, geometry) is None and len(item.mesh.triangles)]
     meshes = {id(item.mesh): item.mesh for item in shown}
@@ -43,7 +34,7 @@ def _arrays(
     mesh: Mesh,
 ) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.float64], NDArray[np.int32]]:
     positions = np.ascontiguousarray(mesh.positions, np.float64)
-    given = mesh.normals
-    directions = np.zeros((0, 3)) if given is None else np.ascontiguousarray(given.vectors, np.float64)
-    rows = np.zeros((0, 3), np.int32) if given is None else np.ascontiguousarray(given.rows)
+    normals = mesh.normals
+    directions = np.zeros((0, 3)) if normals is None else np.ascontiguousarray(normals.vectors, np.float64)
+    rows = np.zeros((0, 3), np.int32) if normals is None else np.ascontiguousarray(normals.rows)
     return positions, np.ascontiguousarray(mesh.triangles), directions, rows

@@ -97,7 +97,7 @@ def test_colours():
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
         ({"vertices": np.zeros((4, 2))}, r"vertices must have shape \(V, 3\), not \(4, 2\)"),
         ({"vertices": [[0, 0, float("nan")]] * 8}, r"vertices\[0, 2\] must be a finite number"),
@@ -113,9 +113,9 @@ def test_colours():
         ({"up": "w"}, "up must be 'x', 'y' or 'z', not 'w'"),
     ],
 )
-def test_refusals(arguments, said):
+def test_refusals(arguments, message):
     vertices, faces = box()
-    with pytest.raises((ValueError, TypeError), match=said):
+    with pytest.raises((ValueError, TypeError), match=message):
         voxrt.voxelize_mesh(**{"vertices": vertices, "faces": faces, **arguments}, depth=2)
 
 

@@ -16,7 +16,7 @@ CAMERA = sim.frame_scene(ROM, (8, 8))
 
 
 @pytest.mark.parametrize(
-    ("option", "value", "said"),
+    ("option", "value", "message"),
     [
         ("engine", "gpu", "engine must be 'rtl' or 'model', not 'gpu'"),
         ("fill", "half", "fill must be 'solid', 'surface' or 'auto'"),
@@ -45,11 +45,11 @@ CAMERA = sim.frame_scene(ROM, (8, 8))
         ("animation", 0, "animation must be a string"),
     ],
 )
-def test_options(option, value, said):
-    with pytest.raises((ValueError, TypeError), match=f"^{said}") as refused:
+def test_options(option, value, message):
+    with pytest.raises((ValueError, TypeError), match=f"^{message}") as refused:
         BuildOptions(**{option: value})
     assert "\n" not in str(refused.value)
-    with pytest.raises((ValueError, TypeError), match=f"^{said}"):
+    with pytest.raises((ValueError, TypeError), match=f"^{message}"):
         voxrt.build("examples/house.obj", **{option: value})
 
 
@@ -75,7 +75,7 @@ def test_exact_conversions_are_made():
 
 
 @pytest.mark.parametrize(
-    ("call", "error", "said"),
+    ("call", "error", "message"),
     [
         (lambda: voxrt.render(TREE), TypeError, "rom must be a Rom, not Octree"),
         (lambda: voxrt.render(ROM, engine="gpu"), ValueError, "engine must be 'rtl' or 'model'"),
@@ -118,8 +118,8 @@ def test_exact_conversions_are_made():
         (lambda: voxrt.save_picture(np.zeros((4, 4)), "a.png"), ValueError, "colour must have shape"),
     ],
 )
-def test_arguments(call, error, said):
-    with pytest.raises(error, match=f"^{said}") as refused:
+def test_arguments(call, error, message):
+    with pytest.raises(error, match=f"^{message}") as refused:
         call()
     assert "\n" not in str(refused.value)
 

@@ -14,8 +14,8 @@ import pytest
 from oracles.meshes import icosphere
 
 import voxrt
-from voxrt.plans.blockwise import join_tiles
-from voxrt.plans.local_workers import completed
+from voxrt.plans.local_workers import LocalWorkers
+from voxrt.plans.tile_store import TileStore
 
 distributed = pytest.importorskip("distributed")
 
@@ -39,8 +39,8 @@ end = time.monotonic() + 100
 while not list(folder.glob("*.tile")) and child.poll() is None and time.monotonic() < end:
     os.sched_yield()
 os.killpg(child.pid, number)
-_, said = child.communicate(timeout=100)
-sys.stderr.buffer.write(said)
+_, errors = child.communicate(timeout=100)
+sys.stderr.buffer.write(errors)
 sys.exit(child.returncode)
 """
 
@@ -91,14 +91,15 @@ def same(built, alone):
 @pytest.mark.parametrize("on_a_cluster", [False, True])
 def test_squares_of_tiles_that_workers_join_give_the_same_bytes(on_a_cluster, tmp_path, monkeypatch):
     names = []
+    join = TileStore.join
 
-    def look(pieces, *others):
+    def look(store, pieces, *others):
         names.extend(pieces)
-        return join_tiles(pieces, *others)
+        return join(store, pieces, *others)
 
-    monkeypatch.setattr("voxrt.plans.cluster._JOINERS", 1)
-    monkeypatch.setattr("voxrt.plans.cluster._TILES_PER_WORKER", 32)
-    monkeypatch.setattr("voxrt.plans.cluster.join_tiles", look)
+    monkeypatch.setattr("voxrt.plans.by_workers.JOINERS", 1)
+    monkeypatch.setattr("voxrt.plans.by_workers._TILES_PER_WORKER", 32)
+    monkeypatch.setattr(TileStore, "join", look)
     asset = tmp_path / "ball.obj"
     ball = icosphere(2, (0.0, 0.0, 0.0), 1.0)
     lines = [f"v {x} {y} {z}" for x, y, z in ball.positions]
@@ -117,14 +118,14 @@ def test_squares_of_tiles_that_workers_join_give_the_same_bytes(on_a_cluster, tm
 
 @pytest.mark.parametrize("workers", [1, 2, 4])
 def test_workers_give_the_bytes_of_one_machine(workers, alone, tmp_path):
-    told = []
+    reports = []
     built = voxrt.build(
-        EXAMPLES / "dog.usda", tmp_path / "dog.mem", depth=DEPTH, workers=workers, clustered=told.append
+        EXAMPLES / "dog.usda", tmp_path / "dog.mem", depth=DEPTH, workers=workers, clustered=reports.append
     )
     same(built, alone)
-    assert [one.done for one in told] == list(range(1, told[-1].tiles + 1))
-    assert {one.workers for one in told} == {workers}
-    assert told[-1].bytes > 0
+    assert [one.done for one in reports] == list(range(1, reports[-1].tiles + 1))
+    assert {one.workers for one in reports} == {workers}
+    assert reports[-1].bytes > 0
 
 
 def test_a_worker_that_is_killed_is_survived(alone, tmp_path):
@@ -154,11 +155,11 @@ def test_a_process_of_this_machine_that_is_killed_is_survived(alone, tmp_path):
 
 def test_processes_that_are_killed_again_and_again_are_one_line():
     with pytest.raises(voxrt.ToolError, match="were killed 3 times") as lost:
-        list(completed(end_this_process, None, [()], 2))
+        list(LocalWorkers(2).completed(end_this_process, [()]))
     assert "\n" not in str(lost.value)
 
 
-def end_this_process(_shared):
+def end_this_process():
     os._exit(1)
 
 
@@ -212,7 +213,7 @@ def test_an_interrupted_cluster_leaves_tiles_and_nothing_else(number, code, alon
 
 
 def test_a_scheduler_that_is_not_there_is_one_line(tmp_path, monkeypatch):
-    monkeypatch.setattr("voxrt.plans.cluster._WAIT", 0.5)
+    monkeypatch.setattr("voxrt.plans.dask_workers._WAIT", 0.5)
     with pytest.raises(voxrt.ToolError, match=r"tcp://127.0.0.1:9: no scheduler with a worker answers") as refused:
         voxrt.build(EXAMPLES / "dog.usda", tmp_path / "dog.mem", depth=DEPTH, scheduler="tcp://127.0.0.1:9")
     assert "\n" not in str(refused.value)

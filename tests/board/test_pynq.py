@@ -1,9 +1,8 @@
-"""The driver of the PYNQ board against a fake of PYNQ with the verilated core inside."""
+"""The driver over TCP, the agent, and a fake of PYNQ with the verilated core inside."""
 
 from __future__ import annotations
 
 import re
-import runpy
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,10 +13,9 @@ from oracles import worlds
 from oracles.cuts import memory_of
 
 from voxrt.board import register_device
-from voxrt.board import vdma as vdma_module
+from voxrt.board.agent import voxrt_board
 from voxrt.board.errors import DeviceError, Refused
-from voxrt.board.pynq_device import PARTS, open_pynq
-from voxrt.board.registers import MATERIALS, REGISTERS
+from voxrt.board.registers import REGISTERS
 from voxrt.board.scene import Scene
 from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.simulated.model import ModelDevice
@@ -27,7 +25,6 @@ from voxrt.rtl.configurations import read_configurations
 
 SIZE = (64, 48)
 RTL = Path(__file__).parents[2] / "rtl"
-GENERATED = RTL / "generated" / "voxrt_registers.py"
 
 
 def scene_of(seed, depth=3):
@@ -46,9 +43,9 @@ def core():
     return Core()
 
 
-def test_frames(monkeypatch, core):
+def test_frames(monkeypatch, core, open_board):
     vdma = install(monkeypatch, core)
-    device = open_pynq("voxrt.bit")
+    device = open_board()
     assert device.identity.capacity == 16377  # the mapped words, in whole blocks
     assert (device.identity.depth, device.identity.position_limit) == (16, 1 << 21)
     memory, model = SceneMemory(device), ModelDevice()
@@ -68,13 +65,14 @@ def test_frames(monkeypatch, core):
     assert registers["size"] == 32 | 24 << 16
     assert registers["position[0]"] == view.camera.position[0] & 0xFFFFFFFF
     device.close()
-    assert device.registers()["control"] == 4
+    assert core.read(REGISTERS["control"][0]) == 4
+    open_board()  # the agent has ended the work for the client before
     assert vdma.memory == {}
 
 
-def test_faults(monkeypatch, core):
+def test_faults(monkeypatch, core, open_board):
     vdma = install(monkeypatch, core)
-    device = open_pynq("voxrt.bit")
+    device = open_board()
     memory = SceneMemory(device)
     memory.load(scene_of(1), ignore)
     view = View(Camera((-20, 5, 900), (0, 0, -90), (1, 0, 0), (0, 1, 0)), SIZE)
@@ -88,7 +86,7 @@ def test_faults(monkeypatch, core):
     with pytest.raises(Refused, match="holds 16377"):
         memory.load(replace(scene_of(1), words=np.full(16385, 0xFFFFFF01, dtype=np.uint32)), ignore)
     core.vdma_errors = 1 << 8
-    with pytest.raises(DeviceError, match="the VDMA reports a line that ends too early"):
+    with pytest.raises(DeviceError, match=r"the VDMA reports an error \(early line\); the frame was dropped"):
         device.frame(view)
     core.vdma_errors = 0
     assert (device.frame(view).colour == good).all()
@@ -100,47 +98,40 @@ def test_faults(monkeypatch, core):
         core.hangs = False
     assert (device.frame(view).colour == good).all()
     with monkeypatch.context() as patch:
-        patch.setattr(vdma_module, "_SECONDS", 0.0)
+        patch.setattr(voxrt_board, "VDMA_SECONDS", 0.0)
         patch.setattr(vdma, "tick", lambda: core.run(100))  # the channel writes no frame
         with pytest.raises(DeviceError, match="the VDMA did not answer"):
             device.frame(view)
     assert (device.frame(view).colour == good).all()
 
 
-def test_widths_that_the_vdma_cannot_write(monkeypatch, core):
+def test_widths_that_the_vdma_cannot_write(monkeypatch, core, open_board):
     install(monkeypatch, core)
-    device = open_pynq("voxrt.bit")
+    device = open_board()
     SceneMemory(device).load(scene_of(1), ignore)
     view = View(frame_world(3, SIZE), SIZE)
     check_view(view, device.identity)
     for columns in (1, 4, 44, 62, 63):
-        with pytest.raises(Refused, match=f"{columns} columns are no multiple of 8, which PYNQ"):
+        with pytest.raises(Refused, match=f"{columns} columns are no multiple of 8, which board at 127"):
             check_view(replace(view, size=(columns, 48)), device.identity)
 
 
-def test_other_hardware(monkeypatch, core):
-    with pytest.raises(DeviceError, match="this machine has no package pynq"):
-        open_pynq("voxrt.bit")
+def test_other_hardware(monkeypatch, core, open_board):
+    with pytest.raises(voxrt_board.RefusedError, match=r"^voxrt\.bit: no ray tracer .*No module named 'pynq'"):
+        open_board()
     install(monkeypatch, core)
-    with pytest.raises(DeviceError, match="cannot be opened"):
-        open_pynq("missing")
+    with pytest.raises(voxrt_board.RefusedError, match=r"^missing: no ray tracer \(OSError"):
+        voxrt_board.Board("missing")
     core.identity = 7
     with pytest.raises(DeviceError, match="the ray tracer does not answer"):
-        open_pynq("voxrt.bit")
+        open_board()
 
 
 def test_the_block_design_has_these_names():
     design = (RTL / "vivado" / "build.tcl").read_text()
     cells = re.findall(r"create_bd_cell .* (\w+)$", design, re.MULTILINE)
-    assert set(PARTS) < set(cells)
+    assert set(voxrt_board.PARTS) < set(cells)
     for name, base in BASE.items():
         assert re.search(rf"{name}/\w+ 0x{base:08X}", design)
     mapped = int(re.search(r"memory/S_AXI 0x\w+ (\d+)K", design)[1]) << 10
     assert mapped >= 4 * read_configurations()["z1"].words
-
-
-def test_the_map_is_the_generated_one():
-    if not GENERATED.exists():
-        pytest.skip("rtl/generated is not there yet")
-    made = runpy.run_path(str(GENERATED))
-    assert (made["REGISTERS"], made["MATERIALS"]) == (REGISTERS, MATERIALS)

@@ -1,4 +1,4 @@
-"""The driver of the PYNQ board where the octree is in the processor's memory, against the fake of PYNQ."""
+"""The driver over TCP, the agent and the fake of PYNQ where the octree is in the processor's memory."""
 
 from __future__ import annotations
 
@@ -10,9 +10,8 @@ from fakes.pynq import Core, install
 from oracles import worlds
 from oracles.cuts import memory_of
 
+from voxrt.board.agent.voxrt_board import WORDS_BEFORE, Board, RefusedError
 from voxrt.board.errors import DeviceError
-from voxrt.board.external_memory import WORDS_BEFORE
-from voxrt.board.pynq_device import open_pynq
 from voxrt.board.registers import REGISTERS
 from voxrt.board.scene import Scene
 from voxrt.board.scene_memory import SceneMemory
@@ -62,9 +61,9 @@ def ignore(_stage, _done, _total):
     pass
 
 
-def test_frames(monkeypatch, core):
+def test_frames(monkeypatch, core, open_board):
     vdma = install(monkeypatch, core)
-    device = open_pynq("voxrt.bit")
+    device = open_board()
     assert (device.identity.depth, device.identity.position_limit) == (12, 1 << 18)
     assert device.identity.capacity > read_configurations()["z1"].words
     registers = device.registers()
@@ -82,12 +81,13 @@ def test_frames(monkeypatch, core):
             assert len(np.unique(colour.reshape(-1, 3), axis=0)) > 4
     assert roots[0] == 0 != roots[1], "the second scene is beside the first"
     device.close()
-    assert vdma.memory == {}
+    open_board()  # the agent has ended the work for the client before, and keeps the octree's memory
+    assert list(vdma.memory) == [registers["memory_base"]]
 
 
-def test_a_scene_that_no_block_ram_holds(monkeypatch, core):
+def test_a_scene_that_no_block_ram_holds(monkeypatch, core, open_board):
     install(monkeypatch, core)
-    device = open_pynq("voxrt.bit")
+    device = open_board()
     scene = scattered(20000)
     assert len(scene.words) > XC7Z020_WORDS
     SceneMemory(device).load(scene, ignore)
@@ -95,11 +95,11 @@ def test_a_scene_that_no_block_ram_holds(monkeypatch, core):
     assert device.registers()["lines_read"] > 100
 
 
-def test_words_that_are_overwritten(monkeypatch, core):
+def test_words_that_are_overwritten(monkeypatch, core, open_board):
     """Two scenes that do not fit together stand at the same place: caches must not keep the words of the first."""
     first, second = boxes(1), boxes(2)
     install(monkeypatch, core)
-    device = open_pynq("voxrt.bit")
+    device = open_board()
     device.identity = replace(device.identity, capacity=max(len(first.words), len(second.words)))
     memory = SceneMemory(device)
     for scene in (first, second, first):
@@ -109,10 +109,10 @@ def test_words_that_are_overwritten(monkeypatch, core):
         assert device.registers()["root"] == 0
 
 
-def test_what_is_read_back_comes_from_the_memory(monkeypatch, core):
+def test_what_is_read_back_comes_from_the_memory(monkeypatch, core, open_board):
     """And not from the processor's caches: otherwise reading back would prove nothing."""
     vdma = install(monkeypatch, core)
-    device = open_pynq("voxrt.bit")
+    device = open_board()
     words = np.arange(100, 120, dtype=np.uint32)
     device.write_memory(40, words)
     (buffer,) = vdma.memory.values()
@@ -122,20 +122,20 @@ def test_what_is_read_back_comes_from_the_memory(monkeypatch, core):
     assert device.read_memory(44, 3).tolist() == [104, 7, 106]
 
 
-def test_level_of_detail_of_an_earlier_program_is_off(monkeypatch, core):
+def test_level_of_detail_of_an_earlier_program_is_off(monkeypatch, core, open_board):
     install(monkeypatch, core)
     core.write(REGISTERS["lod"][0], 1 << 31 | 1 << 10)
-    device = open_pynq("voxrt.bit")
+    device = open_board()
     assert device.registers()["lod"] == 0
     scene = boxes(2)
     SceneMemory(device).load(scene, ignore)
     assert (device.frame(view_of(scene)).colour == expected(scene, view_of(scene))).all()
 
 
-def test_it_takes_most_of_what_is_free_and_leaves_room_for_a_frame(monkeypatch, core):
+def test_it_takes_most_of_what_is_free_and_leaves_room_for_a_frame(monkeypatch, core, open_board):
     free = 24 << 20
     vdma = install(monkeypatch, core, contiguous=free)
-    device = open_pynq("voxrt.bit")
+    device = open_board()
     (buffer,) = vdma.memory.values()
     assert (free - FRAME_BYTES) * 3 // 4 - 4 <= buffer.nbytes <= free - FRAME_BYTES
     assert device.identity.capacity in range(len(buffer) - WORDS_BEFORE - 7, len(buffer) - WORDS_BEFORE + 1)
@@ -143,9 +143,9 @@ def test_it_takes_most_of_what_is_free_and_leaves_room_for_a_frame(monkeypatch, 
     assert len(vdma.memory) == 2
 
 
-def test_errors_of_the_bus_are_one_line(monkeypatch, core):
+def test_errors_of_the_bus_are_one_line(monkeypatch, core, open_board):
     vdma = install(monkeypatch, core)
-    device = open_pynq("voxrt.bit")
+    device = open_board()
     memory = SceneMemory(device)
     scene = boxes(1)
     memory.load(scene, ignore)
@@ -164,30 +164,28 @@ def test_errors_of_the_bus_are_one_line(monkeypatch, core):
 
 
 def test_memory_that_the_core_cannot_use(monkeypatch, core):
-    vdma = install(monkeypatch, core, contiguous=FRAME_BYTES + 1000)
-    with pytest.raises(DeviceError, match=r"^too little contiguous memory is free for an octree and a frame; .*$"):
-        open_pynq("voxrt.bit")
-    assert vdma.memory == {}
-    vdma = install(monkeypatch, core, contiguous=FRAME_BYTES - 1)
-    with pytest.raises(DeviceError, match="too little contiguous memory"):
-        open_pynq("voxrt.bit")
+    for free in (FRAME_BYTES + 1000, FRAME_BYTES - 1):
+        vdma = install(monkeypatch, core, contiguous=free)
+        with pytest.raises(RefusedError, match=r"^contiguous memory is too small for an octree and a frame; .*$"):
+            Board("voxrt.bit")
+        assert vdma.memory == {}
     vdma = install(monkeypatch, core, first_address=0x8_0000_0000)
-    with pytest.raises(DeviceError, match=r"^pynq.allocate gave memory at 0x800[0-9A-F]+, and .* reaches 4 GiB; "):
-        open_pynq("voxrt.bit")
+    with pytest.raises(RefusedError, match=r"^contiguous memory is beyond the 4 GiB of the ray tracer; .*$"):
+        Board("voxrt.bit")
     assert vdma.memory == {}
 
 
-def test_a_block_design_for_the_other_form(monkeypatch, core):
+def test_a_block_design_for_the_other_form(monkeypatch, core, open_board):
     with monkeypatch.context() as patch:
         patch.setattr(core, "cached", False)
         install(patch, core)
         with pytest.raises(DeviceError, match="has its octree in external memory, and the block design does not"):
-            open_pynq("voxrt.bit")
+            open_board()
     tiny = Core("tiny")
     tiny.cached, tiny.map_external = True, lambda _address, _words: None
     install(monkeypatch, tiny)
     with pytest.raises(DeviceError, match="has its octree on the chip, and the block design does not"):
-        open_pynq("voxrt.bit")
+        open_board()
 
 
 def test_the_simulated_core(core):  # noqa: ARG001 - skips where there is none

@@ -11,13 +11,15 @@ from oracles import worlds
 from oracles.cuts import memory_of
 
 from voxrt.board.errors import DeviceError
-from voxrt.board.pynq_device import open_pynq
+from voxrt.board.register_writes import decode_fields
 from voxrt.board.registers import MATERIALS, REGISTERS
-from voxrt.board.scene import EMPTY_LEAF, Scene
+from voxrt.board.scene import Scene
 from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.simulated.core import open_rtl
 from voxrt.board.simulated.model import ModelDevice
 from voxrt.board.view import View, frame_world
+from voxrt.boards.core_files import each_write
+from voxrt.octree.words import EMPTY
 
 SIZE = (32, 24)
 NAMES = {address: name for name, (address, _) in REGISTERS.items()}
@@ -34,12 +36,12 @@ class Recorder:
         self._device, self._registers, self._memory = device, device._registers, device._memory
         device._registers = device._memory = self
 
-    def read(self, offset):
-        return self._registers.read(offset)
+    def read(self, offsets):
+        return self._registers.read(offsets)
 
-    def write(self, offset, value):
-        self.writes.append((NAMES.get(offset, "materials"), value))
-        self._registers.write(offset, value)
+    def write(self, writes):
+        self.writes += [(NAMES.get(offset, "materials"), value) for offset, value in each_write(writes)]
+        self._registers.write(writes)
 
     def __len__(self):
         return len(self._memory)
@@ -60,7 +62,7 @@ def scene_of(seed, depth, words=0):
     return Scene(
         f"world {seed}",
         depth,
-        np.concatenate([used, np.full(rest, EMPTY_LEAF, dtype=np.uint32)]),
+        np.concatenate([used, np.full(rest, EMPTY, dtype=np.uint32)]),
         colours,
         np.zeros(256, dtype=bool),
     )
@@ -81,18 +83,22 @@ def expected(scene, view):
     return model.frame(view).colour
 
 
+def fields_of(device, name):
+    return decode_fields(name, device.registers()[name])
+
+
 def ignore(_stage, _done, _total):
     pass
 
 
 @pytest.fixture(params=["simulated core", "PYNQ", "PYNQ, external memory"])
-def open_device(request, monkeypatch):
+def open_device(request, monkeypatch, open_board):
     """A function that opens the same hardware, again at every call."""
     pytest.importorskip("voxrt.sim._rtl", reason="the verilated core is not in this installation")
     core = Core("cached1" if request.param == "PYNQ, external memory" else "tiny")
     if request.param != "simulated core":
         install(monkeypatch, core)
-        return lambda: open_pynq("voxrt.bit")
+        return open_board
 
     class Module:
         CORES = ("tiny",)
@@ -148,7 +154,7 @@ def test_words_written_during_a_frame(open_device, monkeypatch):
 
     def write_and_advance():
         nonlocal steps
-        if steps < 3 and device._fields("status")["busy"]:
+        if steps < 3 and fields_of(device, "status")["busy"]:
             next(loading)
             steps += 1
         advance()
@@ -216,7 +222,7 @@ def test_scenes_that_do_not_fit_together(open_device):
         view = view_of(scene)
         recorder.writes.clear()
         assert (device.frame(view).colour == expected(scene, view)).all()
-        flushes = [HOLD | FLUSH] if device._fields("configuration")["cached"] else []
+        flushes = [HOLD | FLUSH] if fields_of(device, "configuration")["cached"] else []
         assert [value for name, value in recorder.writes if name == "control"] == [*flushes, START]
         assert device.registers()["root"] == 0
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
+
 import numpy as np
 import pytest
 from fakes.device import FakeDevice, scene, wide_scene
@@ -9,8 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from voxrt.board.errors import DeviceError, Refused
-from voxrt.board.scene import Scene, check_memory, relocate
+from voxrt.board.scene import Scene, check_memory
 from voxrt.board.scene_memory import SceneMemory
+from voxrt.octree.words import move_pointers
 
 
 def ignore(_stage, _done, _total):
@@ -65,7 +68,7 @@ def test_the_steps_of_a_scene_of_millions_of_words_are_longer():
     memory.load(scene(), ignore)
     new = wide_scene("new", 400_000)
     assert len(list(memory.load_in_steps(new, ignore))) == 2 * 256
-    assert (device.memory[device.root :][: len(new.words)] == relocate(new.words, device.root)).all()
+    assert (device.memory[device.root :][: len(new.words)] == move_pointers(new.words, device.root)).all()
 
 
 def test_frames_between_the_steps_of_a_large_scene():
@@ -198,20 +201,31 @@ def test_a_device_that_cannot_be_restored_says_so():
 @pytest.mark.parametrize(
     ("words", "depth", "problem"),
     [
-        ([1, 1] + [0xFFFFFF00] * 7, 3, "word 0x1 points deeper than 3 levels"),
-        ([9] + [0xFFFFFF00] * 8, 3, "word 0x0 points to no block"),
-        ([2] + [0xFFFFFF00] * 8, 3, "word 0x0 points to no block"),
-        ([0] + [0xFFFFFF00] * 8, 3, "word 0x0 points to no block"),
-        ([1, 0x80000001] + [0xFFFFFF00] * 7, 3, "word 0x1 is neither"),
-        ([0xFFFFFF00] * 8, 3, "8 words are not a root and blocks of 8 words"),
-        ([], 3, "0 words are not"),
-        ([0xFFFFFF00], 0, "a depth of 0"),
-        ([0xFFFFFF00], 17, "a depth of 17"),
+        ([1, 1] + [0xFFFFFF00] * 7, 3, "word 0x1: pointer 00000001 leads back"),
+        ([9] + [0xFFFFFF00] * 8, 3, "word 0x0: pointer 00000009 leads behind"),
+        ([2] + [0xFFFFFF00] * 8, 3, "word 0x0: pointer 00000002 does not stand at the start of a block"),
+        ([0] + [0xFFFFFF00] * 8, 3, "word 0x0: pointer 00000000 does not stand at the start of a block"),
+        ([1, 0x80000001] + [0xFFFFFF00] * 7, 3, "word 0x1: 80000001 is neither"),
+        ([1, 9] + [0xFFFFFF00] * 15, 1, "word 0x1: pointer 00000009 lies below depth 1"),
+        ([0xFFFFFF00] * 8, 3, "8 words are not a root and blocks of 8"),
+        ([], 3, "there is no word"),
+        ([0xFFFFFF00], 0, "depth 0 is outside"),
+        ([0xFFFFFF00], 17, "depth 17 is outside"),
     ],
 )
 def test_malformed_memories(words, depth, problem):
     with pytest.raises(Refused, match=problem):
         check_memory(np.array(words, dtype=np.uint32), depth)
+
+
+@pytest.mark.parametrize(
+    ("roots", "problem"),
+    [((), "no frame"), ((0, 9), "root at word 9 of 9"), ((-1,), "root at word -1"), ((0, 1), None)],
+)
+def test_roots(roots, problem):
+    words = np.array([1] + [0xFFFFFF07] * 8, dtype=np.uint32)
+    with pytest.raises(Refused, match=problem) if problem else nullcontext():
+        check_memory(words, 3, roots)
 
 
 @given(st.lists(st.integers(0, 2**32 - 1) | st.integers(0, 40), max_size=41), st.integers(1, 5))
@@ -228,6 +242,6 @@ def test_accepted_memories_are_octrees(words, depth):
 def test_relocated(blocks, eighths):
     there = scene(blocks=blocks)
     device = FakeDevice(1024)
-    device.memory[8 * eighths : 8 * eighths + len(there.words)] = relocate(there.words, 8 * eighths)
+    device.memory[8 * eighths : 8 * eighths + len(there.words)] = move_pointers(there.words, 8 * eighths)
     device.root, device.depth = 8 * eighths, there.depth
     assert device.octree() == leaves(there.words, there.depth)

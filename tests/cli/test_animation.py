@@ -14,11 +14,9 @@ import voxrt
 from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.simulated.model import ModelDevice
 from voxrt.board.view import View
-from voxrt.boards.board_scenes import board_scene
+from voxrt.boards.board_scenes import board_scene, load_scene
 from voxrt.cli.run import run
-from voxrt.export import blob_bytes
-from voxrt.serve.blob import read_blob as read_on_board
-from voxrt.serve.mem_files import read_mem_files
+from voxrt.export import write_blob
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from animated_assets import write_lift_glb, write_lift_usda, write_still_obj
@@ -120,11 +118,8 @@ def test_a_manifest_with_a_wrong_root_is_refused(lift, tmp_path, root):
 def test_a_device_plays_the_frames_by_its_root(lift, tmp_path):
     built = voxrt.build_animation(lift, tmp_path, depth=4, times=voxrt.frame_times(0, 2, 4))
     camera = voxrt.animation_camera(built.blob, SIZE)
-    scenes = (
-        board_scene(built.blob),
-        read_on_board(blob_bytes(built.blob)),
-        read_mem_files("lift", built.outputs["mem"].read_bytes(), built.outputs["manifest"].read_bytes()),
-    )
+    write_blob(tmp_path / "lift.blob", built.blob)
+    scenes = (board_scene(built.blob), load_scene(tmp_path / "lift.blob"), load_scene(built.outputs["mem"]))
     device = ModelDevice(capacity=1 << 12)
     memory = SceneMemory(device)
     for scene in scenes:  # the second and the third stand at other places of the memory

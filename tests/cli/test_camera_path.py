@@ -28,9 +28,9 @@ def house(voxrt, folder):
 def test_a_path_has_the_pictures_of_its_cameras(voxrt, house, detail):
     finished = render(voxrt, "--cameras", cameras(house), "-o", "p.png", "--check", "--json", *detail)
     assert finished.code == 0, finished.err
-    told = json.loads(finished.out)
-    assert [one["outputs"]["picture"] for one in told] == ["p-0000.png", "p-0001.png", "p-0002.png"]
-    assert [one["wrong_pixels"] for one in told] == [0, 0, 0]
+    results = json.loads(finished.out)
+    assert [one["outputs"]["picture"] for one in results] == ["p-0000.png", "p-0001.png", "p-0002.png"]
+    assert [one["wrong_pixels"] for one in results] == [0, 0, 0]
     alone = (["--position", "20.5,30,60", "--look", "0,-1,-3"], [], ["--position", "-10,30,60"])
     for number, sight in enumerate(alone):
         assert render(voxrt, *sight, *detail, "-o", "one.png").code == 0
@@ -48,7 +48,7 @@ def test_a_cluster_gives_the_same_pictures(voxrt, house):
 
 
 @pytest.mark.parametrize(
-    ("entries", "said"),
+    ("entries", "message"),
     [
         ({}, "path.json: is not a list of cameras"),
         ([], "path.json: is not a list of cameras"),
@@ -58,10 +58,10 @@ def test_a_cluster_gives_the_same_pictures(voxrt, house):
         ([{"look": [0, 0, 1e30]}], "path.json: camera 0: "),
     ],
 )
-def test_a_file_that_is_no_path_is_one_line(voxrt, house, entries, said):
+def test_a_file_that_is_no_path_is_one_line(voxrt, house, entries, message):
     finished = render(voxrt, "--cameras", cameras(house, entries), "-o", "p.png")
     assert finished.code == 2
-    assert said in finished.error
+    assert message in finished.error
     assert not list(house.glob("*.png"))
 
 

@@ -38,9 +38,9 @@ def _in_a_folder_of_its_own(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
 
-@pytest.mark.parametrize(("asked", "expected"), [(None, LEFT), ("left", LEFT), ("right", RIGHT), ("1", RIGHT)])
-def test_the_first_camera_or_the_named_one(asked, expected):
-    built = preview(LEFT, RIGHT, camera=asked)
+@pytest.mark.parametrize(("camera", "expected"), [(None, LEFT), ("left", LEFT), ("right", RIGHT), ("1", RIGHT)])
+def test_the_first_camera_or_the_named_one(camera, expected):
+    built = preview(LEFT, RIGHT, camera=camera)
     assert built.preview.camera == authored_camera(expected, built.rom.grid, SIZE)
     assert built.view == authored_camera(expected, built.rom.grid, (640, 480))
     frame = render_frame(built.rom, built.preview.camera, SIZE, engine="model")

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from voxrt import plain_verilog
+from voxrt.boards import plain_verilog
 from voxrt.rtl.configurations import list_sources, read_configurations
 
 needs_yosys = pytest.mark.skipif(

@@ -10,7 +10,12 @@ import subprocess
 import sys
 from contextlib import contextmanager
 
+import numpy as np
 import pytest
+from fakes.blob import blob_of
+from fakes.board_agent import running_agent
+from fakes.device import wide_scene
+from fakes.pynq import Core, install
 
 from voxrt.serve.frame_client import open_client
 
@@ -112,6 +117,52 @@ def test_a_server_on_the_simulated_hardware(folder):
         assert served["url"]
 
 
+@pytest.fixture
+def board(monkeypatch):
+    """The address of an agent with a token, which the environment has too."""
+    pytest.importorskip("voxrt.sim._rtl")
+    install(monkeypatch, Core())
+    monkeypatch.setenv("VOXRT_BOARD_TOKEN", "a token")
+    with running_agent("a token") as (address, _):
+        yield address
+
+
+def test_a_server_on_a_board_shows_what_the_model_shows(folder, board):
+    async def picture(url):
+        async with open_client(url) as client:
+            await client.take_control()
+            await client.request("view", size=[64, 48])
+            number = await client.send("show", scene="house")
+            while (await client._answer(number))["type"] != "done":
+                pass
+            while (packet := await client.next_frame()).scene != 1:
+                pass
+            return client.hello["device"]["name"], packet.frame.colour
+
+    found = []
+    for device in (board, "model"):
+        with serving(folder, "--depth", "4", "--device", device) as served:
+            found.append(asyncio.run(asyncio.wait_for(picture(served["url"]), 300)))
+    (name, colour), (_, expected) = found
+    assert name == f"board at {board.removeprefix('tcp://')}, 1 lane"
+    assert (colour == expected).all()
+    assert len(np.unique(colour.reshape(-1, 3), axis=0)) > 4
+
+
+def test_upload_to_a_board(voxrt, folder, board, monkeypatch):
+    assert voxrt("build", "house.obj", "--depth", 4).code == 0
+    for options, done in (([], "loaded"), (["--dry-run"], "checked; nothing was written")):
+        finished = voxrt("upload", "house.mem", "--to", board, *options)
+        assert finished.code == 0
+        assert f"house.mem: {done}" in finished.err
+    (folder / "wide.blob").write_bytes(blob_of(wide_scene("wide", 3000)))
+    finished = voxrt("upload", "wide.blob", "--to", board)
+    assert (finished.code, "wide has 24001 words and board at 127" in finished.error) == (4, True)
+    monkeypatch.setenv("VOXRT_BOARD_TOKEN", "another")
+    finished = voxrt("upload", "house.mem", "--to", board)
+    assert (finished.code, "the token is another one" in finished.error) == (5, True)
+
+
 def test_a_server_for_others_wants_a_token(folder):
     with serving(folder, "--host", "0.0.0.0") as served:
         assert "#token=" in served["url"]
@@ -122,8 +173,9 @@ def test_a_server_for_others_wants_a_token(folder):
     [
         (["serve", "--port", "65536"], 2, "--port 65536 is not 0 to 65535"),
         (["serve", "--depth", "17"], 2, "--depth 17 is not 1 to 16"),
-        (["serve", "--device", "pynq"], 2, "--device pynq needs the ray tracer's --bitstream"),
-        (["serve", "--device", "pynq", "--bitstream", "a.bit"], 5, "this machine has no package pynq"),
+        (["serve", "--device", "abacus"], 2, "there are model, sim, serial:PORT and tcp://BOARD:PORT"),
+        (["serve", "--device", "tcp://board"], 5, "tcp://board is no address of a board; name it as tcp://BOARD:PORT"),
+        (["serve", "--device", "tcp://127.0.0.1:1"], 5, "127.0.0.1:1 does not answer"),
         (["serve", "nothing.mem"], 3, "nothing.mem"),
         (["serve", "nothing.blob"], 3, "nothing.blob"),
         (["upload", "house.obj", "--to", "127.0.0.1:1"], 2, "is no .mem or .blob; build it first"),

@@ -23,7 +23,7 @@ def rom():
 
 
 @pytest.mark.parametrize(
-    "given",
+    "registers",
     [
         {},
         {"position": (-80, 48, 1280)},
@@ -43,21 +43,21 @@ def rom():
         {"right": (20, 0, -3), "position": (0, 480, 1640)},
     ],
 )
-def test_a_camera_is_right_handed_and_sees_the_scene(rom, given):
-    camera = aim_camera(rom, SIZE, **given)
-    for name, value in given.items():
-        alone = name == "look" and not {"right", "up"} & set(given)
+def test_a_camera_is_right_handed_and_sees_the_scene(rom, registers):
+    camera = aim_camera(rom, SIZE, **registers)
+    for name, value in registers.items():
+        alone = name == "look" and not {"right", "up"} & set(registers)
         assert getattr(camera, name) == value or alone
     look, right, up = (np.array(vector, float) for vector in (camera.look, camera.right, camera.up))
-    if "look" in given:
-        assert np.cross(look, given["look"]) == pytest.approx(0, abs=2e-4 * np.linalg.norm(look))
-        assert look @ given["look"] > 0
+    if "look" in registers:
+        assert np.cross(look, registers["look"]) == pytest.approx(0, abs=2e-4 * np.linalg.norm(look))
+        assert look @ registers["look"] > 0
     look, right, up = (vector / np.linalg.norm(vector) for vector in (look, right, up))
     assert right == pytest.approx(np.cross(look, up), abs=0.05)
-    assert "up" in given or "right" in given or up[1] > -0.01
+    assert "up" in registers or "right" in registers or up[1] > -0.01
     drawn = render(rom, camera, size=SIZE, engine="model").material != 0
     assert drawn.any()
-    if "position" not in given:
+    if "position" not in registers:
         assert not (drawn[0].any())
         assert not (drawn[-1].any())
         assert not (drawn[:, 0].any())
@@ -78,7 +78,7 @@ def test_an_empty_memory_has_a_camera():
 
 
 @pytest.mark.parametrize(
-    "given",
+    "registers",
     [
         {"look": (0, 0, 0)},
         {"right": (0, 0, 0)},
@@ -88,9 +88,9 @@ def test_an_empty_memory_has_a_camera():
         {"look": (0, 0, 9), "right": (1, 0, 0), "up": (1, 0, 0)},
     ],
 )
-def test_registers_that_make_no_camera(rom, given):
+def test_registers_that_make_no_camera(rom, registers):
     with pytest.raises(ViewpointError):
-        aim_camera(rom, SIZE, **given)
+        aim_camera(rom, SIZE, **registers)
 
 
 @pytest.mark.parametrize("size", [(64, 48), (48, 64)])

@@ -90,12 +90,12 @@ def test_the_c_code(connected, expected, tmp_path):
     assert (built.returncode, built.stderr) == (0, "")
     page = ctypes.CDLL(str(tmp_path / "page.so"))
     word = ctypes.c_uint32
-    given = {
+    substitutes = {
         "on_write_register": ctypes.CFUNCTYPE(None, word, word)(connected.write_register),
         "on_read_register": ctypes.CFUNCTYPE(word, word)(connected.read_register),
         "on_write_word": ctypes.CFUNCTYPE(None, word, word)(connected.write_word),
     }
-    for name, function in given.items():
+    for name, function in substitutes.items():
         ctypes.c_void_p.in_dll(page, name).value = ctypes.cast(function, ctypes.c_void_p).value
     page.first_frame.restype = word
     assert page.first_frame() == 0

@@ -1,22 +1,26 @@
-"""Blobs of scenes that no builder makes."""
+"""Files of scenes that no builder makes."""
 
 from __future__ import annotations
 
-import struct
-import zlib
+from voxrt.export import Blob, blob_bytes
+from voxrt.export.manifest import make_manifest, manifest_bytes
+from voxrt.export.word_file import mem_crc32, mem_pieces
+from voxrt.octree import Octree, Rom
+from voxrt.voxelize import Material
 
 
-def blob_of(scene, name: bytes | None = None) -> bytes:
-    """A blob with a scene's words and 256 materials."""
-    sections = {
-        b"NAME": scene.name.encode() if name is None else name,
-        b"WRLD": struct.pack("<I", scene.depth),
-        b"MATL": struct.pack("<I", 256) + b"".join(struct.pack("<4BHxx", *row, 0, 0) for row in scene.colours.tolist()),
-        b"WORD": scene.words.astype("<u4").tobytes(),
-    }
-    table, body = b"", b""
-    start = 24 + 16 * len(sections)
-    for section, data in sections.items():
-        table += struct.pack("<4sIII", section, start + len(body), len(data), zlib.crc32(data))
-        body += data + bytes(-len(data) % 8)
-    return struct.pack("<8sIIII", b"VOXRTBLB", 1, len(sections), start + len(body), zlib.crc32(table)) + table + body
+def rom_of(scene, name: str | None = None) -> Rom:
+    """The memory of a scene, with 256 materials."""
+    materials = tuple(Material(f"m{row}", tuple(colour)) for row, colour in enumerate(scene.colours.tolist()))
+    return Rom(name or scene.name, Octree(scene.depth, scene.words), materials)
+
+
+def blob_of(scene, name: str | None = None) -> bytes:
+    """A scene as a blob."""
+    return blob_bytes(Blob(rom_of(scene, name)))
+
+
+def mem_files(scene) -> dict[str, bytes]:
+    """A scene as a .mem and its .json."""
+    manifest = make_manifest(rom_of(scene), mem_crc32(scene.words), "report")
+    return {f"{scene.name}.mem": b"".join(mem_pieces(scene.words)), f"{scene.name}.json": manifest_bytes(manifest)}

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import json
-import zlib
 from contextlib import asynccontextmanager
 
 from fakes.device import FakeDevice
 from fakes.scene_reader import ReadyScenes
 
+from voxrt.boards.board_scenes import asset_reader
 from voxrt.serve.scene_library import SceneLibrary
-from voxrt.serve.scene_process import memory_reader
 from voxrt.serve.server import FrameServer
 from voxrt.serve.server_options import ServerOptions
 
@@ -21,20 +19,11 @@ def ignore(_stage, _done, _total):
     pass
 
 
-def mem_files(made, name=None):
-    """The .mem and the .json of a scene."""
-    mem = "".join(f"{word:08X}\n" for word in made.words.tolist()).encode()
-    rows = [{"colour": colour, "mirror": False} for colour in made.colours[:8].tolist()]
-    manifest = {"depth": made.depth, "dialect": "report", "crc32": f"{zlib.crc32(mem):08X}", "materials": rows}
-    name = name or made.name
-    return {f"{name}.mem": mem, f"{name}.json": json.dumps(manifest).encode()}
-
-
 @asynccontextmanager
 async def served(device=None, loaded=None, scenes=None, reader=None, **options):
     device = device or FakeDevice()
     own = ReadyScenes(**scenes or {})
-    library = SceneLibrary(reader or memory_reader(), own.files, own)
+    library = SceneLibrary(reader or asset_reader(), own.files, own)
     async with FrameServer(device, library, ServerOptions(**options)) as server:
         if loaded is not None:
             await server.session.renderer.load(loaded, ignore)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from voxrt.board.device import Device
     from voxrt.board.scene import Scene
-    from voxrt.serve.scene_files import SceneReader
+    from voxrt.serve.scene_process import SceneReader
 
 
 def rom_of(name: str, world: NDArray[np.uint8], depth: int) -> Rom:

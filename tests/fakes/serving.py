@@ -20,12 +20,12 @@ WAIT = 60.0
 class Serving:
     """The process, its addresses, and what can be seen of it from outside."""
 
-    def __init__(self, process, said, temporary: Path, errors: Path) -> None:
+    def __init__(self, process, report, temporary: Path, errors: Path) -> None:
         self.process = process
-        self.url: str = said["url"]
-        self.urls: list[str] = said["urls"]
-        self.port: int = said["port"]
-        self.legacy_port = said["legacy_port"]
+        self.url: str = report["url"]
+        self.urls: list[str] = report["urls"]
+        self.port: int = report["port"]
+        self.legacy_port = report["legacy_port"]
         self.temporary = temporary
         self._errors = errors
 

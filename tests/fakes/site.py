@@ -20,12 +20,12 @@ def site() -> Path:
     return SITE
 
 
-def node(script: Path, given: object, *arguments: str) -> object:
+def node(script: Path, value: object, *arguments: str) -> object:
     """Run a script in Node with JSON as its input; return what it prints, JSON too."""
     if shutil.which("node") is None:
         pytest.skip("no node here: apt install nodejs")
     done = subprocess.run(
-        ["node", *arguments, str(script)], input=json.dumps(given), capture_output=True, text=True, check=False
+        ["node", *arguments, str(script)], input=json.dumps(value), capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr[-2000:]
     return json.loads(done.stdout)

@@ -18,14 +18,12 @@ from oracles.gltf_writer import glb
 from oracles.rich_gltf import rich
 
 from voxrt import export, octree, voxelize
-from voxrt.board.errors import Refused
 from voxrt.octree.camera import Camera, Lighting
-from voxrt.serve.blob import read_blob as read_blob_on_the_board
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-REFUSALS = (voxelize.AssetError, voxelize.DoesNotFitError, octree.RomError, Refused)
+REFUSALS = (voxelize.AssetError, voxelize.DoesNotFitError, octree.RomError)
 """All that a reader may raise."""
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
@@ -108,9 +106,9 @@ def _mem_with_manifest(folder: Path, data: bytes) -> Path:
     """Words, then a manifest whose checksum of them is right."""
     words, _, manifest = data.partition(_BETWEEN)
     try:
-        said = json.loads(manifest)
-        said["rom"]["crc32"] = f"{zlib.crc32(words):08x}"
-        manifest = json.dumps(said).encode()
+        document = json.loads(manifest)
+        document["rom"]["crc32"] = f"{zlib.crc32(words):08x}"
+        manifest = json.dumps(document).encode()
     except (ValueError, TypeError, KeyError, RecursionError):
         pass
     (folder / "a.json").write_bytes(manifest)
@@ -137,9 +135,9 @@ def _read_scene(path: Path) -> None:
 def _read_rom(path: Path) -> None:
     """Read as told nothing, and as told a depth and a dialect."""
     refusals = []
-    for said in ({}, {"depth": 3}, {"depth": 3, "dialect": "report"}, {"depth": 3, "dialect": "lod"}):
+    for options in ({}, {"depth": 3}, {"depth": 3, "dialect": "report"}, {"depth": 3, "dialect": "lod"}):
         try:
-            blob, _ = export.read_any(path, **said)
+            blob, _ = export.read_any(path, **options)
         except REFUSALS as error:
             refusals.append(error)
             continue
@@ -147,12 +145,6 @@ def _read_rom(path: Path) -> None:
         assert len(blob.rom.materials) <= 256
     if len(refusals) == 4:
         raise refusals[0]
-
-
-def _read_blob(path: Path) -> None:
-    """Read on both sides; what the desk refuses, the board may take: it checks the words when it loads them."""
-    read_blob_on_the_board(path.read_bytes())
-    _read_rom(path)
 
 
 def _mem_seeds() -> tuple[bytes, ...]:
@@ -324,7 +316,7 @@ READERS = {
     "manifest": Reader(_mem_with_manifest, _read_rom, (_manifest_seed(),), (b'"materials"', b"null", b"1e999")),
     "coe": Reader(_as("a.coe"), _read_rom, (_COE,)),
     "mif": Reader(_as("a.mif"), _read_rom, (_MIF,)),
-    "blob": Reader(_blob, _read_blob, (_blob_seed(),), (b"NAME", b"WRLD", b"MATL", b"WORD", b"VIEW", b"LITE")),
+    "blob": Reader(_blob, _read_rom, (_blob_seed(),), (b"NAME", b"WRLD", b"MATL", b"WORD", b"VIEW", b"LITE")),
     "vox": Reader(_as("a.vox"), _read_rom, (_vox_seed(),), (b"SIZE", b"XYZI", b"nTRN", b"nGRP", b"nSHP"), (".vox",)),
 }
 """By name."""

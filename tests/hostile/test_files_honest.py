@@ -46,24 +46,24 @@ def picture(tmp_path):
 
 @pytest.mark.parametrize("names", [("s", "t"), ("u", "v"), ("texture_u", "texture_v")])
 def test_ply_texture_of_vertices(tmp_path, picture, names):
-    said = ply(
+    text = ply(
         "".join(f"property float {name}\n" for name in names),
         ("0 0 0 0.5 0.75", "1 0 0 0.5 0.75", "0 1 0 0.5 0.75"),
         comments=picture,
     )
-    scene = voxelize.load(written(tmp_path, said, "a.ply"))
+    scene = voxelize.load(written(tmp_path, text, "a.ply"))
     surface = scene.objects[0].mesh.appearance
     assert sample(surface, np.array([0]), np.full((1, 3), 1 / 3))[0].tolist() == [1, 0, 0, 1]
     assert not scene.warnings
 
 
 def test_ply_texture_of_corners(tmp_path, picture):
-    said = ply(
+    text = ply(
         comments=picture,
         of_face="property list uchar float texcoord\n",
         face="3 0 1 2 6 0.5 0.25 0.5 0.25 0.5 0.25",
     )
-    surface = voxelize.load(written(tmp_path, said, "a.ply")).objects[0].mesh.appearance
+    surface = voxelize.load(written(tmp_path, text, "a.ply")).objects[0].mesh.appearance
     assert sample(surface, np.array([0]), np.full((1, 3), 1 / 3))[0].tolist() == [0, 1, 0, 1]
 
 
@@ -219,9 +219,9 @@ def test_the_manifest_is_the_same_wherever_the_asset_is(tmp_path):
         (tmp_path / folder).mkdir()
         path = written(tmp_path / folder, text, "u.usda")
         out = voxrt.build(path, tmp_path / folder / "out", depth=3).outputs["manifest"]
-        said = json.loads(out.read_text())
-        said.pop("seconds", None)
-        manifests.append(said)
+        document = json.loads(out.read_text())
+        document.pop("seconds", None)
+        manifests.append(document)
         assert str(tmp_path) not in out.read_text()
         assert "0x" not in out.read_text()
     assert manifests[0] == manifests[1]
@@ -263,7 +263,7 @@ def Camera "flat" {
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("[objects]\nbox = { size = [1, 1, 1] }\n", r"line 1: .*write \[\[objects\]\]"),
         ('[[objects]]\nasset = "x.glb"\n', r'line 2: asset is a table; write asset = \{ file = "x.glb" \}'),
@@ -272,8 +272,8 @@ def Camera "flat" {
         ("[[objects]]\nbox = { size = [1, 1, 1] }\nposition = [1, 2, 3]\n", r"unknown key 'position'; use name, box, "),
     ],
 )
-def test_scene_toml_says_what_to_write(tmp_path, text, said):
-    with pytest.raises(AssetError, match=said):
+def test_scene_toml_says_what_to_write(tmp_path, text, message):
+    with pytest.raises(AssetError, match=message):
         voxelize.load(written(tmp_path, text, "a.toml"))
 
 

@@ -91,17 +91,17 @@ def died(tmp_path, monkeypatch, code):
 
 @pytest.mark.parametrize("name", ["SIGABRT", "SIGSEGV", "SIGBUS", "SIGKILL"])
 def test_whatever_ends_the_child_is_one_line(tmp_path, monkeypatch, name):
-    said = died(tmp_path, monkeypatch, f"import os, signal; os.kill(os.getpid(), signal.{name})")
-    assert f"usd-core crashed while it read the file ({name})" in said
+    message = died(tmp_path, monkeypatch, f"import os, signal; os.kill(os.getpid(), signal.{name})")
+    assert f"usd-core crashed while it read the file ({name})" in message
 
 
 def test_a_child_that_waits_for_ever_is_ended(tmp_path, monkeypatch):
-    said = died(
+    message = died(
         tmp_path,
         monkeypatch,
         "import signal, time; signal.setitimer(signal.ITIMER_REAL, 0.2); time.sleep(600)",
     )
-    assert "takes more than 4 seconds" in said
+    assert "takes more than 4 seconds" in message
 
 
 @pytest.mark.parametrize(

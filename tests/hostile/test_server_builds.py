@@ -143,7 +143,7 @@ def test_files_and_names_are_limited(server):
             pair = [{"name": name, "size": 9, "crc32": 0} for name in ("a.mem", "A.MEM")]
             with pytest.raises(Refused, match="two files have the name"):
                 await client.request("upload", files=pair)
-            hidden = blob_of(scene("x"), name="a\u202eb\x07\n".encode() + b"c" * 5000)
+            hidden = blob_of(scene("x"), name="a\u202eb\x07\n" + "c" * 5000)
             name = (await client.upload({"x.blob": hidden}, ignore))["scene"]["name"]
             assert name.startswith("a\\x202eb\\x07\\x0ac")
             assert name.isprintable()

@@ -95,10 +95,10 @@ def test_what_servers_do_wrong(tmp_path, capsys, monkeypatch, handle, problem):
         loop.call_soon_threadsafe(ended.set)
         thread.join(60)
         loop.close()
-    said = capsys.readouterr().err
-    assert problem in said
-    assert "bug" not in said
-    assert said.count("\n") == 1
+    message = capsys.readouterr().err
+    assert problem in message
+    assert "bug" not in message
+    assert message.count("\n") == 1
 
 
 @pytest.mark.parametrize("listens", [True, False])

@@ -17,10 +17,10 @@ from fakes.device import FakeDevice, scene
 from fakes.serving import run, serving, until
 from fakes.sockets import ended, raw_connection
 
+from voxrt.boards.board_scenes import asset_reader
 from voxrt.serve.frame_client import open_client
 from voxrt.serve.packets import FRAME_HEADER
 from voxrt.serve.scene_library import SceneLibrary
-from voxrt.serve.scene_process import memory_reader
 from voxrt.serve.server import FrameServer
 from voxrt.serve.server_options import Limits, ServerOptions
 
@@ -31,7 +31,7 @@ LEGACY_REQUEST = struct.pack("<7I", *[0x7FF000] * 6, 0)
 @asynccontextmanager
 async def served(device, limits=None, **options):
     options = ServerOptions(limits=limits or Limits(), **options)
-    async with FrameServer(device, SceneLibrary(memory_reader()), options) as server:
+    async with FrameServer(device, SceneLibrary(asset_reader()), options) as server:
         await server.session.renderer.load(scene(), lambda *_: None)
         yield server
 

@@ -24,7 +24,7 @@ DRIVER = """
 import json, os, shutil, signal, sys
 from voxrt.cli.start import start
 import voxrt.cli.app, voxrt.cli.build, voxrt.cli.convert, voxrt.cli.upload, voxrt.cli.view, voxrt.boards.board_scenes
-import PIL.PngImagePlugin, trimesh, voxrt.serve.blob, voxrt.board.simulated.model, voxrt.board.scene_memory
+import PIL.PngImagePlugin, trimesh, voxrt.export.blob, voxrt.board.simulated.model, voxrt.board.scene_memory
 arguments, count, signals = json.loads(sys.argv[1])
 events = moment = number = 0
 def watch(event, _arguments):

@@ -19,13 +19,6 @@ from voxrt.export.atomic import staged_files, write_atomically, write_together
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    for name in ("house.obj", "house.mtl", "dog.usda"):
-        shutil.copy(EXAMPLES / name, tmp_path)
-    return tmp_path
-
-
 def command(folder: Path, *arguments: str, limit: int | None = None) -> subprocess.CompletedProcess[str]:
     """``voxrt`` in a process of its own, which may be kept from writing files longer than `limit` bytes."""
     code = "from voxrt.cli import main\n"

@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import json
-import shutil
-import signal
 import sys
 from pathlib import Path
-from typing import NamedTuple
 
 import pytest
 from PIL import Image
@@ -15,35 +12,15 @@ from PIL import Image
 from voxrt import BuildOptions, build, export
 from voxrt.building.fitting import fit_budget
 from voxrt.cli import progress
-from voxrt.cli.run import run
 from voxrt.plans.estimate import BuildEstimate, estimate_build
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 
-class Finished(NamedTuple):
-    code: int
-    out: str
-    err: str
-
-
 @pytest.fixture
-def typed(tmp_path, monkeypatch, capfd):
+def typed(voxrt):
     """Runs a command line in a folder with house.obj and dog.usda."""
-    for name in ("house.obj", "house.mtl", "dog.usda"):
-        shutil.copy(EXAMPLES / name, tmp_path)
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sys, "unraisablehook", sys.unraisablehook)
-    handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
-
-    def command(*arguments: str) -> Finished:
-        capfd.readouterr()
-        code = run(arguments)
-        return Finished(int(code), *capfd.readouterr())
-
-    yield command
-    for number, handler in handlers.items():
-        signal.signal(number, handler)
+    return voxrt
 
 
 def names(folder: str = ".") -> list[str]:
@@ -81,9 +58,9 @@ def test_lengths(typed, length, metres):
 def test_names_in_any_case(typed):
     arguments = ("--depth", "3", "--up", "Z", "--fill", "Surface", "--board", "PYNQ_Z1", "--dialect", "SEED_RTL")
     assert typed("build", "house.obj", *arguments).code == 0
-    told = manifest()
-    assert (told["source"]["settings"]["up"], told["source"]["settings"]["fill"]) == ("z", "surface")
-    assert told["dialect"] == "seed-rtl"
+    document = manifest()
+    assert (document["source"]["settings"]["up"], document["source"]["settings"]["fill"]) == ("z", "surface")
+    assert document["dialect"] == "seed-rtl"
 
 
 @pytest.mark.parametrize(
@@ -201,15 +178,15 @@ def test_an_estimate_before_a_long_build(capfd):
 
 
 def test_estimates_grow_with_the_surface():
-    told = []
+    results = []
     for depth in (6, 8, 14):
         built: list[BuildEstimate] = []
         scene = build(EXAMPLES / "house.obj", depth=4).scene
         from voxrt import fit_grid
 
         built.append(estimate_build(scene, fit_grid(scene, depth=depth), BuildOptions(depth=depth)))
-        told += built
-    assert told[0].seconds < told[1].seconds < 10
-    assert told[2].seconds > 60
+        results += built
+    assert results[0].seconds < results[1].seconds < 10
+    assert results[2].seconds > 60
     large = BuildOptions(preview=True, size=(8192, 8192))
     assert estimate_build(scene, fit_grid(scene, depth=4), large).seconds > 60

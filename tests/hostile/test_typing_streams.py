@@ -4,24 +4,13 @@ from __future__ import annotations
 
 import os
 import shutil
-import signal
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from voxrt.cli.run import run
-
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 ODD = b"h\xff\xfeuse"
-
-
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    for name in ("house.obj", "house.mtl"):
-        shutil.copy(EXAMPLES / name, tmp_path)
-    return tmp_path
 
 
 def shell(folder: Path, line: str, **variables: str) -> subprocess.CompletedProcess[bytes]:
@@ -55,10 +44,7 @@ def test_streams(folder, line, code):
 
 
 @pytest.mark.skipif(sys.platform == "darwin", reason="file names are UTF-8 there")
-def test_names_that_are_no_text(folder, monkeypatch, capfd):
-    monkeypatch.chdir(folder)
-    monkeypatch.setattr(sys, "unraisablehook", sys.unraisablehook)
-    handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
+def test_names_that_are_no_text(voxrt):
     odd = os.fsdecode(ODD)
     shutil.copy("house.obj", f"{odd}.obj")
     lines = [
@@ -78,13 +64,12 @@ def test_names_that_are_no_text(folder, monkeypatch, capfd):
         ("upload", f"{odd}.mem", "--device", "model"),
     ]
     for line in lines:
-        assert run(line) == 0, capfd.readouterr().err
+        finished = voxrt(*line)
+        assert finished.code == 0, finished.err
     Path(f"{odd}.json").unlink()
-    assert run(("info", f"{odd}.mem", "--json")) == 0
-    assert run(("build", f"{odd}-nothing.obj")) == 3
+    assert voxrt("info", f"{odd}.mem", "--json").code == 0
+    assert voxrt("build", f"{odd}-nothing.obj").code == 3
     assert {f"{odd}.mem", f"{odd}.png", f"{odd}-2.coe", f"{odd}-2.json"} <= {path.name for path in Path().iterdir()}
-    for number, handler in handlers.items():
-        signal.signal(number, handler)
 
 
 @pytest.mark.skipif(sys.platform == "darwin", reason="file names are UTF-8 there")

@@ -22,6 +22,13 @@ def box_mesh(low, high, material=1, *, inverted=False):
     return Mesh(low + unit * (high - low), triangles, np.full(12, material, np.uint8))
 
 
+def without(mesh, drop):
+    """Give a mesh without some of its triangles."""
+    keep = np.ones(len(mesh.triangles), bool)
+    keep[drop] = False
+    return Mesh(mesh.positions, mesh.triangles[keep], mesh.materials[keep])
+
+
 def joined(*meshes):
     """Give one mesh of several, without welding."""
     firsts = np.cumsum([0, *(len(mesh.positions) for mesh in meshes[:-1])])

@@ -29,7 +29,7 @@ def listed() -> dict[str, tuple[str, str]]:
     return {name: (licence, where) for name, licence, where in rows if name != "package"}
 
 
-def asked() -> dict[str, str]:
+def requirements() -> dict[str, str]:
     """Every package that pyproject.toml asks users to install, and when."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())
     needs = dict.fromkeys(project["project"]["dependencies"], "always")
@@ -40,20 +40,20 @@ def asked() -> dict[str, str]:
 
 
 def test_the_list_is_complete():
-    assert {name: where for name, (_, where) in listed().items()} == asked()
+    assert {name: where for name, (_, where) in listed().items()} == requirements()
 
 
 @pytest.mark.parametrize("name", listed())
 def test_the_package_says_the_same(name):
     try:
-        told = metadata(name)
+        fields = metadata(name)
     except PackageNotFoundError:
         pytest.skip(f"{name} is not installed")
-    classifiers = [line for line in told.get_all("Classifier") or [] if line.startswith("License")]
-    said = " ".join([told.get("License-Expression") or "", told.get("License") or "", *classifiers])
+    classifiers = [line for line in fields.get_all("Classifier") or [] if line.startswith("License")]
+    text = " ".join([fields.get("License-Expression") or "", fields.get("License") or "", *classifiers])
     licence = listed()[name][0]
     (key,) = (key for key in SAID if re.match(rf"{re.escape(key)}(?![\w-])", licence))
-    assert any(word in said for word in SAID[key]), said
+    assert any(word in text for word in SAID[key]), text
 
 
 def test_every_need_of_users_has_a_lower_bound():

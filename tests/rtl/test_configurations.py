@@ -46,7 +46,7 @@ def test_what_a_configuration_does_not_say_is_the_default(read):
 
 
 @pytest.mark.parametrize(
-    ("content", "said"),
+    ("content", "message"),
     [
         ({"default": {}}, "configurations.json: key 'default' is not known; there are defaults, configurations"),
         (
@@ -67,10 +67,10 @@ def test_what_a_configuration_does_not_say_is_the_default(read):
         ),
     ],
 )
-def test_what_is_not_known_is_refused(read, content, said):
+def test_what_is_not_known_is_refused(read, content, message):
     with pytest.raises(ConfigurationError) as refused:
         read(content)
-    assert str(refused.value).startswith(said)
+    assert str(refused.value).startswith(message)
     assert "\n" not in str(refused.value)
 
 

@@ -44,18 +44,18 @@ def fusesoc(tmp_path):
             text=True,
             check=False,
         )
-        said = finished.stdout + finished.stderr
-        assert finished.returncode == 0, said
+        output = finished.stdout + finished.stderr
+        assert finished.returncode == 0, output
         (folder,) = tmp_path.glob(f"build/voxrt_*/{target}")
-        return said, folder
+        return output, folder
 
     return run
 
 
 @pytest.mark.parametrize("parameters", [("--Lanes", "2"), ("--MemoryForm", "1", "--Light", "1")])
 def test_lint(fusesoc, parameters):
-    said, folder = fusesoc("lint", *parameters)
-    assert "%Warning" not in said
+    output, folder = fusesoc("lint", *parameters)
+    assert "%Warning" not in output
     (settings,) = folder.glob("*.vc")
     for name, value in zip(parameters[::2], parameters[1::2], strict=True):
         assert f"-G{name[2:]}={value}" in settings.read_text()

@@ -153,9 +153,9 @@ def test_elaboration_passes_at_the_ends_of_the_ranges(module: str) -> None:
     ends = {name: inside for name, (inside, _) in RANGES[module].items()}
     for number in range(max(map(len, ends.values()))):
         settings = {name: values[min(number, len(values) - 1)] for name, values in ends.items()}
-        messages = elaborate(module, settings, sources())
-        assert "%Error" not in messages, messages
-        assert "USERERROR" not in messages, messages
+        output = elaborate(module, settings, sources())
+        assert "%Error" not in output, output
+        assert "USERERROR" not in output, output
 
 
 @pytest.mark.parametrize("module", RANGES)
@@ -163,9 +163,5 @@ def test_elaboration_fails_outside_of_a_range(module: str) -> None:
     files = [*SHARED, *(path for path in MODULES if path.stem == module)]
     for name, (_, outside) in RANGES[module].items():
         for value in outside:
-            messages = elaborate(module, {name: value}, files)
-            assert re.search(rf"{module}: ([\w ]+ and )?{name}( and [\w ]+)? must be", messages), (
-                name,
-                value,
-                messages,
-            )
+            output = elaborate(module, {name: value}, files)
+            assert re.search(rf"{module}: ([\w ]+ and )?{name}( and [\w ]+)? must be", output), (name, value, output)

@@ -95,13 +95,13 @@ def test_icarus_shows_what_the_model_does(name, plain, tmp_path):
     words = np.array(words_of(voxels), np.uint32)
     camera = np.array([[-45, 150, -60], [500, -280, 560], [24, 0, -22], [8, 32, 9]], np.int32)
     faces = (189, 40, 140, 255, 219, 200)
-    asked, shading, light = {"brightness": np.array(faces, np.uint8)}, bits("shading", faces=1), (0, 0, 0)
+    settings, shading, light = {"brightness": np.array(faces, np.uint8)}, bits("shading", faces=1), (0, 0, 0)
     if configuration.features:
         mirrors[voxels[voxels > 0][::3]] = 1
         light = (40, 200, -30)
-        asked |= {"light": np.array(light, np.int32), "ambient": 40, "bounces": 2, "mirrors": mirrors}
+        settings |= {"light": np.array(light, np.int32), "ambient": 40, "bounces": 2, "mirrors": mirrors}
         shading = bits("shading", faces=1, light=1, ambient=40, bounces=2)
-    model = _model.Memory(words, DEPTH).render(colours, camera, *SIZE, **asked)
+    model = _model.Memory(words, DEPTH).render(colours, camera, *SIZE, **settings)
     assert len(np.unique(model.material)) > 3
     table = [
         int(mirror) << 24 | red << 16 | green << 8 | blue

@@ -399,10 +399,10 @@ def test_what_is_not_built_in_is_refused(config):
     design = TRACERS[config]
     design.load(np.array([0xFFFFFF01], np.uint32))
     camera = np.array([[0, 0, 0], [0, 0, 1], [1, 0, 0], [0, 1, 0]], np.int32)
-    asked = {"light": {"light": at(1, 2, 3)}, "mirrors": {"bounces": 1}}
+    settings = {"light": {"light": at(1, 2, 3)}, "mirrors": {"bounces": 1}}
     for feature in ALL - set(rtl.FEATURES[config]):
         with pytest.raises(ValueError, match="not been built with"):
-            design.render(camera, 1, 1, 1, MATERIALS, **asked[feature])
+            design.render(camera, 1, 1, 1, MATERIALS, **settings[feature])
     for wrong in ({"bounces": 16}, {"ambient": 256}, {"light": at(0, 0, design.light_limit)}):
         if set(rtl.FEATURES[config]) == ALL:
             with pytest.raises(ValueError, match="is not in"):

@@ -7,7 +7,7 @@ from threading import Timer
 
 import numpy as np
 import pytest
-from fakes.device import FakeDevice, never_merged, scene
+from fakes.device import FakeDevice, never_merged, opened_or_skipped, scene
 from fakes.frame_server import CAMERA, frame_where, ignore, served
 from oracles import worlds
 from oracles.cuts import memory_of
@@ -20,7 +20,6 @@ from voxrt.board.simulated.model import ModelDevice
 from voxrt.board.view import View, frame_world
 from voxrt.serve import renderer
 from voxrt.serve.frame_client import open_client
-from voxrt.sim import SimulatorError
 
 
 class Hanging(FakeDevice):
@@ -88,10 +87,7 @@ def test_a_quick_frame_is_not_dropped(run, monkeypatch):
 
 @pytest.mark.parametrize("opened", [ModelDevice, lambda: open_rtl("tiny")])
 def test_devices_render_on_after_a_frame_was_dropped(opened):
-    try:
-        device = opened()
-    except SimulatorError as error:
-        pytest.skip(str(error))
+    device = opened_or_skipped(opened)
     small = replace(scene("boxes"), depth=4, words=memory_of(worlds.boxes(4, 9, 3)))
     memory = SceneMemory(device)
     memory.load(small, ignore)

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 
 from voxrt.board.errors import DeviceError
 from voxrt.board.view import Camera
+from voxrt.boards.board_scenes import asset_reader
 from voxrt.serve.legacy_server import read_legacy_request
 from voxrt.serve.scene_library import SceneLibrary
-from voxrt.serve.scene_process import memory_reader
 from voxrt.serve.server import FrameServer
 from voxrt.serve.server_options import ServerOptions
 
@@ -45,7 +45,7 @@ def test_request(position, look, right, up, background):
 def test_pictures(run):
     async def check():
         device = FakeDevice(size=(640, 512))
-        library, options = SceneLibrary(memory_reader()), ServerOptions(legacy_port=0)
+        library, options = SceneLibrary(asset_reader()), ServerOptions(legacy_port=0)
         async with FrameServer(device, library, options) as server:
             await server.session.renderer.load(scene(material=9), lambda *_: None)
             before = server.session.renderer.view

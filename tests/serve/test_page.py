@@ -277,9 +277,9 @@ def test_a_wrong_token_and_a_wrong_origin_are_told_apart():
         assert browser.run("return document.querySelector('#away').hidden && location.hash === '#token=sesame'")
         browser.open(server.url.replace("127.0.0.1", "voxrt.example"))  # this name is 127.0.0.1 too
         assert browser.until(f"{away} === 'The server does not know this address'")
-        told = browser.run("return document.querySelector('#away p').innerText")
-        assert f"pages of http://voxrt.example:{server.port} may not connect" in told
-        assert "--origin" in told
+        text = browser.run("return document.querySelector('#away p').innerText")
+        assert f"pages of http://voxrt.example:{server.port} may not connect" in text
+        assert "--origin" in text
 
 
 def test_a_second_viewer_follows_and_takes_control():

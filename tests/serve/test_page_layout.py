@@ -22,7 +22,7 @@ return [...document.querySelectorAll("button, input:not([type=file]), select, su
   return element.checkVisibility() && (width < 24 || height < 24);
 }).map((element) => element.outerHTML);
 """
-# Of each visible element with text of its own: its text, and the contrast of its colour with what is behind it.
+# The script lists visible elements with text of their own: the text, and its contrast with what is behind.
 CONTRASTS = """
 const parse = (colour) => { const n = colour.match(/[\\d.]+/g).map(Number); return [...n.slice(0, 3), n[3] ?? 1]; };
 const over = ([r, g, b, a], back) => [r, g, b].map((part, i) => part * a + back[i] * (1 - a));

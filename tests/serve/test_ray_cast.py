@@ -1,72 +1,54 @@
-"""The ray of a double-click and the bounds of a scene, against the exact model and dense voxels."""
+"""The ray of a double-click: the voxel, the face and the point that the page is told."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-from oracles import worlds
+from fakes.device import scene
 from oracles.cuts import memory_of
 
+from voxrt.board.errors import Refused
 from voxrt.board.scene import Scene
-from voxrt.octree import Octree
-from voxrt.serve.ray_cast import cast_ray
-from voxrt.serve.solid_bounds import solid_bounds
-from voxrt.sim import FACE_NONE, cast_rays
+from voxrt.serve.request_handler import _cast_ray
+from voxrt.serve.requests import CastRay
 
-DEPTH = 4
-WORLDS = {
-    "noise": worlds.noise(DEPTH, 0.05, 3),
-    "boxes": worlds.boxes(DEPTH, 9, 3),
-    "ball": worlds.ball(DEPTH),
-    "empty": np.zeros((16, 16, 16), np.uint8),
-    "full": np.full((16, 16, 16), 7, np.uint8),
-}
+SOLID = (5, 2, 9)
 
 
-def scene_of(voxels):
-    return Scene("scene", DEPTH, memory_of(voxels), np.zeros((256, 3), np.uint8), np.zeros(256, bool))
+def one_voxel():
+    voxels = np.zeros((16, 16, 16), np.uint8)
+    voxels[SOLID] = 7
+    return Scene("one voxel", 4, memory_of(voxels), np.zeros((256, 3), np.uint8), np.zeros(256, bool))
 
 
-@pytest.mark.parametrize("world", WORLDS)
-def test_rays_hit_what_the_model_hits(world):
-    voxels = WORLDS[world]
-    scene = scene_of(voxels)
-    rng = np.random.default_rng(8)
-    origins = rng.integers(-4, 21, (600, 3)) * 16 + rng.choice([0, 0, 5], (600, 3))  # in, around and on planes
-    directions = rng.choice([-7, -3, -1, 0, 1, 2, 9], (600, 3))
-    directions[~directions.any(axis=1)] = 1
-    expected = cast_rays(Octree(DEPTH, scene.words), origins / 16, directions)
-    for number, (origin, direction) in enumerate(zip(origins.tolist(), directions.tolist(), strict=True)):
-        hit = cast_ray(scene, tuple(origin), tuple(direction))
-        assert (hit is not None) == expected.hit[number]
-        if hit is not None:
-            assert hit.voxel == tuple(expected.voxel[number])
-            assert hit.material == expected.material[number]
-            assert (FACE_NONE if hit.face is None else hit.face) == expected.face[number]
-            place = np.array(origin) / 16 + expected.parameter[number] * np.array(direction)
-            assert hit.point == pytest.approx(place, abs=1e-9)
+@pytest.mark.parametrize(
+    ("origin", "direction", "face", "point"),
+    [
+        ((-16, 40, 152), (3, 0, 0), 0, (5, 2.5, 9.5)),
+        ((88, 400, 152), (0, -9, 0), 1, (5.5, 3, 9.5)),
+        ((85, 40, 400), (0, 0, -(2**20 - 1)), 2, (5.3125, 2.5, 10)),
+        ((72, 32, 152), (2, 1, 0), 0, (5, 2.25, 9.5)),
+        ((88, 40, 152), (1, 2, 3), None, (5.5, 2.5, 9.5)),
+        ((88, 40, 152), (0, 0, 0), None, (5.5, 2.5, 9.5)),
+    ],
+)
+def test_hits(origin, direction, face, point):
+    hit = _cast_ray(one_voxel(), 0, CastRay(origin=origin, direction=direction))
+    assert hit == {"voxel": list(SOLID), "material": 7, "face": face, "point": pytest.approx(point, abs=1e-9)}
 
 
-def test_a_ray_without_direction_sees_its_own_voxel():
-    scene = scene_of(WORLDS["boxes"])
-    solid, empty = np.argwhere(WORLDS["boxes"])[0], np.argwhere(WORLDS["boxes"] == 0)[0]
-    assert cast_ray(scene, tuple((16 * solid + 8).tolist()), (0, 0, 0)).voxel == tuple(solid)
-    assert cast_ray(scene, tuple((16 * empty + 8).tolist()), (0, 0, 0)) is None
+@pytest.mark.parametrize(
+    ("origin", "direction"), [((-16, 40, 152), (-3, 0, 0)), ((8, 8, 8), (0, 0, 0)), ((-16, 40, 152), (0, 0, 0))]
+)
+def test_misses(origin, direction):
+    assert _cast_ray(one_voxel(), 0, CastRay(origin=origin, direction=direction)) is None
 
 
-@pytest.mark.parametrize("world", WORLDS)
-def test_bounds_hold_the_solid_voxels_and_no_more(world):
-    solid = np.argwhere(WORLDS[world])
-    bounds = solid_bounds(scene_of(WORLDS[world]))
-    if len(solid) == 0:
-        assert bounds is None
-    else:
-        assert bounds == (tuple(solid.min(axis=0)), tuple(solid.max(axis=0) + 1))
+def test_the_frame_of_an_animation():
+    frames = scene(blocks=2, material=3, roots=(1, 2))  # word 1 leads to the second block, word 2 is a leaf
+    assert _cast_ray(frames, 1, CastRay(origin=(-16, 40, 8), direction=(1, 0, 0)))["voxel"] == [0, 2, 0]
 
 
-def test_bounds_of_one_voxel_in_any_corner():
-    for place in np.ndindex(2, 2, 2):
-        voxels = np.zeros((16, 16, 16), np.uint8)
-        corner = tuple(13 * axis + 1 for axis in place)
-        voxels[corner] = 1
-        assert solid_bounds(scene_of(voxels)) == (corner, tuple(axis + 1 for axis in corner))
+def test_a_ray_from_farther_than_registers_reach():
+    with pytest.raises(Refused, match="must be multiples of 1/16 voxel below"):
+        _cast_ray(one_voxel(), 0, CastRay(origin=(-(1 << 31), 0, 0), direction=(1, 0, 0)))

@@ -15,11 +15,11 @@ from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from voxrt.board.errors import DeviceError, Refused
+from voxrt.boards.board_scenes import asset_reader
 from voxrt.serve.clients import Client
 from voxrt.serve.frame_client import open_client
 from voxrt.serve.packets import CHUNK_LIMIT
 from voxrt.serve.scene_library import SceneLibrary
-from voxrt.serve.scene_process import memory_reader
 from voxrt.serve.server import FrameServer
 from voxrt.serve.server_options import Limits, ServerOptions
 
@@ -74,7 +74,7 @@ def test_the_frames_of_an_animation(run):
         ({"features": ["mirrors"]}, "fake has no mirrors"),
         ({"camera": {**CAMERA, "position": [1 << 20, 0, 0]}}, "the camera is more than 65536 voxels"),
         ({"camera": {**CAMERA, "right": [32767, 0, 0], "up": [32767, 0, 0]}}, "directions reach 1802185"),
-        ({"bounces": 16}, "bounces 16"),
+        ({"bounces": 16}, r"<= 15 - at `\$.bounces`"),
     ],
 )
 def test_views_out_of_range(run, fields, problem):
@@ -194,7 +194,7 @@ def test_access(run):
                 return error.response.status_code
 
         with pytest.raises(Refused, match=r"0\.0\.0\.0 can be reached from other machines; give a token"):
-            FrameServer(FakeDevice(), SceneLibrary(memory_reader()), ServerOptions(host="0.0.0.0"))
+            FrameServer(FakeDevice(), SceneLibrary(asset_reader()), ServerOptions(host="0.0.0.0"))
         async with served(token="sesame") as server:
             assert await status(server) == 401
             assert await status(server, "?token=sesame") == 101
@@ -233,9 +233,9 @@ def test_page(run):
             for name in (b"nothing", b"../server.py", b"%2e%2e/server.py", b"page_files.py"):
                 assert b" 404 " in await http(server.port, b"GET /%b HTTP/1.1\r\nHost: x\r\n\r\n" % name)
             # The page asks why it was refused: it would be, under a name that is not this machine's.
-            asked = b"GET /v2 HTTP/1.1\r\nHost: %b\r\n\r\n"
-            assert b" 426 " in await http(server.port, asked % (b"127.0.0.1:%d" % server.port))
-            refused = await http(server.port, asked % b"x")
+            request = b"GET /v2 HTTP/1.1\r\nHost: %b\r\n\r\n"
+            assert b" 426 " in await http(server.port, request % (b"127.0.0.1:%d" % server.port))
+            refused = await http(server.port, request % b"x")
             assert refused.startswith(b"HTTP/1.1 403 ")
             assert b"pages of http://x may not connect; start the server with --origin http://x" in refused
 

@@ -7,8 +7,9 @@ from dataclasses import replace
 from itertools import pairwise
 
 import pytest
+from fakes.blob import mem_files
 from fakes.device import FakeDevice, scene, wide_scene
-from fakes.frame_server import frame_where, ignore, mem_files, pixel, served
+from fakes.frame_server import frame_where, ignore, pixel, served
 from fakes.scene_reader import ReadyScenes
 
 from voxrt.board.errors import Refused
@@ -76,8 +77,7 @@ def test_uploads_that_break_leave_the_old_scene(run):
 
             new = scene("new", blocks=2)
             await refused(mem_files(scene("big", blocks=6)), "49 words and fake holds 40")
-            await refused({"new.mem": mem_files(new)["new.mem"]}, "neither a blob nor a .mem with its .json")
-            await refused({"new.txt": b"?"}, "neither a blob nor a .mem with its .json")
+            await refused({"new.txt": b"?"}, "upload exactly one file with a suffix of .blob .mem")
             await refused({**mem_files(new), "new.mem": b"FFFFFF01\n"}, "describes another new.mem")
             await refused({**mem_files(new), "new.json": b"{"}, "is no manifest")
             device.fail_write_at = device.writes

@@ -8,6 +8,7 @@ from functools import partial
 
 import numpy as np
 import pytest
+from fakes.device import opened_or_skipped
 from oracles import worlds
 from oracles.cuts import memory_of
 
@@ -20,10 +21,11 @@ from voxrt.board.view import View, refit
 from voxrt.boards.board_scenes import board_scene
 from voxrt.export import Blob
 from voxrt.octree import Octree, Rom
-from voxrt.sim import Camera, Lighting, NoSuchConfigurationError, SimulatorError, render
+from voxrt.sim import Camera, Lighting, NoSuchConfigurationError, render
 from voxrt.voxelize import Material
 
 SIZE = (48, 32)
+TINY = partial(open_rtl, "tiny")
 
 
 def ignore(_stage, _done, _total):
@@ -38,13 +40,10 @@ def rom_of(name, seed):
 
 @pytest.mark.parametrize(
     ("engine", "opened"),
-    [("model", ModelDevice), ("tiny", partial(open_rtl, "tiny")), ("lit", partial(open_rtl, "lit"))],
+    [("model", ModelDevice), ("tiny", TINY), ("lit", partial(open_rtl, "lit"))],
 )
 def test_swapped_scenes(engine, opened):
-    try:
-        device = opened()
-    except SimulatorError as error:
-        pytest.skip(str(error))
+    device = opened_or_skipped(opened)
     memory = SceneMemory(device)
     roots = set()
     for seed in range(3):
@@ -74,10 +73,7 @@ def test_features_and_background(opened):
     mirrors = tuple(replace(material, mirror=i % 2 == 1) for i, material in enumerate(rom.materials))
     rom = replace(rom, materials=(replace(mirrors[0], colour=(1, 2, 3)), *mirrors[1:]))
     scene = board_scene(Blob(rom))
-    try:
-        device = opened()
-    except SimulatorError as error:
-        pytest.skip(str(error))
+    device = opened_or_skipped(opened)
     assert device.identity.features == {"light", "mirrors"}
     SceneMemory(device).load(scene, ignore)
     size = (80, 60)
@@ -100,7 +96,7 @@ def test_features_and_background(opened):
 
 
 def test_a_core_without_features():
-    assert rtl_device().identity.features == frozenset()
+    assert opened_or_skipped(TINY).identity.features == frozenset()
 
 
 def test_faults():
@@ -121,15 +117,8 @@ def test_faults():
         device.frame(View(steep, (640, 480)))
 
 
-def rtl_device():
-    try:
-        return open_rtl("tiny")
-    except SimulatorError as error:
-        pytest.skip(str(error))
-
-
 def test_every_width_of_the_stream():
-    device, model = rtl_device(), ModelDevice()
+    device, model = opened_or_skipped(TINY), ModelDevice()
     scene = board_scene(Blob(rom_of("world", 5)))
     for either in (device, model):
         SceneMemory(either).load(scene, ignore)
@@ -140,7 +129,7 @@ def test_every_width_of_the_stream():
 
 
 def test_an_unknown_configuration():
-    rtl_device()
+    opened_or_skipped(TINY)
     with pytest.raises(
         NoSuchConfigurationError, match="no ray tracer configuration 'huge'; there are cached1, lit, tiny"
     ):
@@ -148,7 +137,7 @@ def test_an_unknown_configuration():
 
 
 def test_a_frame_from_another_thread_and_a_dropped_one(monkeypatch):
-    device = rtl_device()
+    device = opened_or_skipped(TINY)
     scene = board_scene(Blob(rom_of("world", 6)))
     SceneMemory(device).load(scene, ignore)
     view = View(refit(scene.camera, (640, 480), SIZE), SIZE)

@@ -67,7 +67,7 @@ def test_one_origin_or_direction_serves_all_rays():
 
 
 @pytest.mark.parametrize(
-    ("origins", "directions", "said"),
+    ("origins", "directions", "message"),
     [
         ([0, 0, 0], [0, 0, 0], r"directions\[0\] must not be zero"),
         ([0, 0, 0], [[1, 0, 0], [0, 0, 0]], r"directions\[1\] must not be zero"),
@@ -80,6 +80,6 @@ def test_one_origin_or_direction_serves_all_rays():
         ([[0, 0]], [1, 0, 0], r"origins must have shape \(N, 3\)"),
     ],
 )
-def test_refusals(origins, directions, said):
-    with pytest.raises(ValueError, match=said):
+def test_refusals(origins, directions, message):
+    with pytest.raises(ValueError, match=message):
         sim.cast_rays(octree_of(WORLDS["sparse noise"]), origins, directions)

@@ -82,8 +82,8 @@ def cameras_of(voxels, seed):
 @pytest.mark.parametrize("world", WORLDS)
 def test_every_pixel_has_the_oracles_colour(world, shader):
     voxels, options = WORLDS[world], SHADERS[shader]
-    asked = {{"brightness": "faces"}.get(name, name): value for name, value in options.items()}
-    oracle = Shader(PALETTE, mirrors=EVERY_OTHER, **asked)
+    settings = {{"brightness": "faces"}.get(name, name): value for name, value in options.items()}
+    oracle = Shader(PALETTE, mirrors=EVERY_OTHER, **settings)
     for registers in cameras_of(voxels, seed=len(shader)):
         frame = rendered(voxels, registers, options)
         for (row, column), _ in np.ndenumerate(frame.face):

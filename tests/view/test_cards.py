@@ -69,8 +69,8 @@ def test_builds_scenes_and_rays():
     built = voxrt.build(EXAMPLES / "house.obj", depth=4)
     html = built._repr_html_()
     assert len(repr(built)) < 200
-    for told in ("house", "16 voxels per side", f"{built.solid_voxels:,} voxels", "timber, glass, brick"):
-        assert told in html
+    for text in ("house", "16 voxels per side", f"{built.solid_voxels:,} voxels", "timber, glass, brick"):
+        assert text in html
     assert pixels(built._repr_png_()).ndim == 3
     html = built.scene._repr_html_()
     triangles = sum(len(item.mesh.triangles) for item in built.scene.objects)

@@ -35,11 +35,6 @@ def mesh_of(rom):
 
 
 @pytest.fixture(scope="module")
-def _pyvista():
-    pytest.importorskip("pyvista", reason="the extra voxrt-build[view] is not installed")
-
-
-@pytest.fixture(scope="module")
 def file(tmp_path_factory):
     return tmp_path_factory.mktemp("files")
 

@@ -16,7 +16,6 @@ from PIL import Image
 
 from voxrt import octree, view
 from voxrt.octree.leaf_arrays import Leaves
-from voxrt.view.plotter import check_screen
 from voxrt.view.sides import covered_sides
 from voxrt.voxelize import EMPTY, DoesNotFitError, Material
 
@@ -28,19 +27,6 @@ def rom_of(cube):
     colours = [COLOURS[material % 3] for material in range(255)]
     materials = (EMPTY, *(Material(f"m{number}", colour) for number, colour in enumerate(colours, 1)))
     return octree.Rom("world", octree.from_dense(cube), materials)
-
-
-@pytest.fixture(scope="module")
-def _pyvista():
-    pytest.importorskip("pyvista", reason="the extra voxrt-build[view] is not installed")
-
-
-@pytest.fixture(scope="module")
-def _canvas(_pyvista):
-    try:
-        check_screen(off_screen=True)
-    except view.ViewerError as problem:
-        pytest.skip(str(problem))
 
 
 def all_leaves(tree):

@@ -7,20 +7,13 @@ import pytest
 
 from voxrt import octree, view
 from voxrt.octree.camera import FACES, look_at
-from voxrt.view.plotter import check_screen
 from voxrt.view.scene_overlay import preview_of
 from voxrt.voxelize import EMPTY, Material
 
 SIZE = (320, 240)
 
 
-@pytest.fixture(autouse=True)
-def _canvas():
-    pytest.importorskip("pyvista", reason="the extra voxrt-build[view] is not installed")
-    try:
-        check_screen(off_screen=True)
-    except view.ViewerError as problem:
-        pytest.skip(str(problem))
+pytestmark = pytest.mark.usefixtures("_canvas")
 
 
 @pytest.fixture
@@ -135,10 +128,10 @@ def test_many_octants_have_a_stand_in_while_they_are_turned(rom, opened, monkeyp
 
 
 def test_a_click_in_the_preview_chooses_the_ray(rom, opened):
-    asked = []
+    pixels = []
 
     def follow(pixel):
-        asked.append(pixel)
+        pixels.append(pixel)
         return view.DrawnRay(
             (-4.0, 8.0, 8.0), (3.0, 8.0, 8.0), np.array([[0, 0, 0], [3, 8, 4]]), np.array([3, 0]),
             np.array([9, 0xFFFFFF02], np.uint32), np.array([[0.0, 8, 8], [3, 8, 8]]), (f"pixel {pixel}",),
@@ -146,13 +139,13 @@ def test_a_click_in_the_preview_chooses_the_ray(rom, opened):
 
     colour = np.zeros((30, 40, 3), np.uint8)
     window = opened([view.Pane(rom)], SIZE, preview=view.Preview(colour, (1, 2), follow))
-    assert set(asked) == {(1, 2)}
+    assert set(pixels) == {(1, 2)}
     renderer = window.plotter.renderers[0]
     renderer.SetWorldPoint(31.5, 30 - 20.5, 0, 1)  # pixel 31,20
     renderer.WorldToDisplay()
     x, y, _ = renderer.GetDisplayPoint()
     window.plotter.iren._mouse_left_button_click(round(x), round(y))
-    assert asked[-1] == (31, 20)
+    assert pixels[-1] == (31, 20)
     assert texts(window)["table"] == "pixel (31, 20)"
 
 
@@ -202,9 +195,9 @@ def test_legends_stand_beside_the_scene_and_in_their_pane(rom, opened, size, by)
             assert scene[:, 0].max() < low[0]
             assert scene.min() > 0
             assert scene[:, 1].max() < 1 - 20 / size[1]  # below the title
-    told = [actor.GetInput() for name, actor in legend.items() if not name.endswith("squares")]
+    lines = [actor.GetInput() for name, actor in legend.items() if not name.endswith("squares")]
     if by == "owner" and size == (320, 240):
-        assert told[-1].startswith("and ")
+        assert lines[-1].startswith("and ")
 
 
 @pytest.mark.parametrize("size", [(320, 240), (640, 480), (1024, 640)])

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from oracles.meshes import box_mesh, icosphere, joined, one_object, scene_of
+from oracles.meshes import box_mesh, icosphere, joined, one_object, scene_of, without
 from oracles.voxels import dense, snap, winding_at
 
 from voxrt.voxelize import Grid, Mesh, SceneObject, voxelize
@@ -16,13 +16,7 @@ from voxrt.voxelize import Grid, Mesh, SceneObject, voxelize
 UNIT = 4096
 
 
-def without(mesh, drop):
-    keep = np.ones(len(mesh.triangles), bool)
-    keep[drop] = False
-    return Mesh(mesh.positions, mesh.triangles[keep], mesh.materials[keep])
-
-
-def asked(cells):
+def samples_of(cells):
     """Where voxels are asked: 1/8192 voxel beside their centres, in 1/4096 voxel."""
     return cells * float(UNIT) + UNIT / 2 + 0.5
 
@@ -39,7 +33,7 @@ def disagreements(mesh, depth, cells=None):
     vertices = snap(mesh.positions, np.eye(4), (0, 0, 0), 1)
     low, high = vertices.min(axis=0) // UNIT, -(-vertices.max(axis=0) // UNIT)
     cells = cells[((cells >= low) & (cells < np.minimum(high, side))).all(axis=1)]
-    number = np.abs(winding_at(asked(cells), vertices, mesh.triangles))
+    number = np.abs(winding_at(samples_of(cells), vertices, mesh.triangles))
     clear = np.abs(number - 0.5) > 2e-6
     return int((filled[tuple(cells.T)] != (number > 0.5))[clear].sum()), len(cells)
 

@@ -6,18 +6,12 @@ import trimesh
 from assets import asset
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from oracles.meshes import MATERIALS, box_mesh, icosphere, one_object, scene_of
+from oracles.meshes import MATERIALS, box_mesh, icosphere, one_object, scene_of, without
 from oracles.voxels import dense, shell, snap, winding
 
 from voxrt.voxelize import AssetError, DoesNotFitError, Grid, Mesh, Scene, SceneObject, fit_grid, voxelize
 
 GRID = Grid(4, (0.0, 0.0, 0.0), 1.0)
-
-
-def without(mesh, drop):
-    keep = np.ones(len(mesh.triangles), bool)
-    keep[drop] = False
-    return Mesh(mesh.positions, mesh.triangles[keep], mesh.materials[keep])
 
 
 @settings(max_examples=15)

@@ -13,10 +13,10 @@ from fakes.site import site
 class QuietHandler(SimpleHTTPRequestHandler):
     """Python's own file server, which lists what was asked for instead of printing it."""
 
-    asked: ClassVar[list[str]] = []
+    paths: ClassVar[list[str]] = []
 
     def log_message(self, *_: object) -> None:
-        self.asked.append(self.path)
+        self.paths.append(self.path)
 
 
 @pytest.fixture(scope="session")
@@ -30,10 +30,10 @@ def address():
 
 
 @pytest.fixture
-def asked():
+def paths():
     """The paths that the page asks for, from the start of the test."""
-    QuietHandler.asked.clear()
-    return QuietHandler.asked
+    QuietHandler.paths.clear()
+    return QuietHandler.paths
 
 
 @pytest.fixture(scope="module")

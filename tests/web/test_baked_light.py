@@ -44,7 +44,7 @@ def assert_same(native: voxrt.BuildResult, found: dict) -> None:
 @pytest.mark.parametrize(
     ("files", "depth"),
     [(["courtyard.glb"], 7), (["planet.glb"], 6), (["house.obj", "house.mtl"], 6)],
-    ids=lambda given: given[0] if isinstance(given, list) else str(given),
+    ids=lambda value: value[0] if isinstance(value, list) else str(value),
 )
 def test_examples_have_the_light_of_the_native_module(files: list[str], depth: int, daylight: str) -> None:
     assert_same(*bake_both([ROOT / "examples" / name for name in files], depth, *DAYLIGHTS[daylight]))

@@ -160,5 +160,5 @@ def test_contradictions_are_refused(tmp_path: Path) -> None:
     }
     paths = [exported(text, tmp_path / f"{name}.usda") for name, (text, _) in texts.items()]
     jobs = [{"files": [str(path)], "depth": 5, "fill": "auto", "frames": []} for path in paths]
-    for (_, said), found in zip(texts.values(), node(SCRIPT, {"site": str(site()), "jobs": jobs}), strict=True):
-        assert said in found["problem"]
+    for (_, problem), found in zip(texts.values(), node(SCRIPT, {"site": str(site()), "jobs": jobs}), strict=True):
+        assert problem in found["problem"]

@@ -88,12 +88,12 @@ def test_nothing_is_asked_of_other_servers(browser: Browser) -> None:
     assert all(name.startswith((browser.address, "blob:")) for name in names)
 
 
-def test_little_is_transferred_before_the_first_picture(browser: Browser, asked: list[str]) -> None:
+def test_little_is_transferred_before_the_first_picture(browser: Browser, paths: list[str]) -> None:
     """Below 600 kB where the server compresses, as most do."""
     browser.cdp("Network.clearBrowserCache")
     opened(browser)
     assert browser.until(shown("courtyard", 7))
-    files = {site().parent / path.split("?")[0].strip("/") for path in asked if not path.endswith("/")}
+    files = {site().parent / path.split("?")[0].strip("/") for path in paths if not path.endswith("/")}
     assert any(path.name == "voxrt.wasm" for path in files)
     assert sum(len(gzip.compress(path.read_bytes())) for path in files if path.is_file()) < 600_000
 

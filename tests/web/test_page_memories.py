@@ -150,12 +150,12 @@ def test_a_damaged_or_foreign_manifest_is_refused(browser: Browser, tmp_path: Pa
     }
     opened(browser)
     assert browser.until(shown("courtyard", 7))
-    for field, (value, said) in bad.items():
+    for field, (value, message) in bad.items():
         browser.run("document.querySelector('#close').click()")
         files["manifest"].write_text(json.dumps({**good, field: value}))
         drop(browser, files["mem"], files["manifest"])
         assert browser.until(REFUSES), field
-        assert said in notice(browser)
+        assert message in notice(browser)
     assert browser.faults() == []
 
 

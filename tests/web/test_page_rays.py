@@ -41,14 +41,14 @@ def hardware_says(browser: Browser) -> str:
     return browser.run("return document.querySelector('#hardware-says').textContent")
 
 
-def test_the_real_hardware_renders_the_view_with_no_wrong_pixel(browser: Browser, asked: list[str]) -> None:
+def test_the_real_hardware_renders_the_view_with_no_wrong_pixel(browser: Browser, paths: list[str]) -> None:
     opened(browser)
     assert browser.until(shown("courtyard", 7))
-    assert not any("hardware.wasm" in path for path in asked)
+    assert not any("hardware.wasm" in path for path in paths)
     browser.run("document.querySelector('#run-hardware').click()")
     assert browser.until("!document.querySelector('#hardware-result').hidden", 60), hardware_says(browser)
     assert hardware_says(browser).startswith("0 wrong pixels of 76,800")
-    assert any("hardware.wasm" in path for path in asked)
+    assert any("hardware.wasm" in path for path in paths)
     # The circuit counts the clocks that it takes natively, for the same view.
     script = """
         const { toRegisters } = await import("./camera.js");

@@ -75,8 +75,8 @@ MADE = {
 
 def jobs(paths: list[Path]) -> list[dict]:
     images = {path: [str(one) for one in path.parent.glob("*.png")] for path in paths}
-    given = [{"files": [str(path), *images[path]], "depth": DEPTH, "fill": "auto", "frames": []} for path in paths]
-    return node(SCRIPT, {"site": str(site()), "jobs": given})
+    rows = [{"files": [str(path), *images[path]], "depth": DEPTH, "fill": "auto", "frames": []} for path in paths]
+    return node(SCRIPT, {"site": str(site()), "jobs": rows})
 
 
 @pytest.fixture(scope="module")
@@ -197,8 +197,8 @@ def test_contradictions_and_what_would_not_end_are_refused(tmp_path: Path) -> No
     (tmp_path / "unit.usda").write_text(stage(mesh("a"), "metersPerUnit = 0"))
     texts = [tmp_path / f"{name}.usda" for name in (*REFUSED, "unit")]
     found = jobs([*texts, packed(tmp_path / "layers.usdz", 25), packed(tmp_path / "few.usdz", 3)])
-    said = [*(problem for _, problem in REFUSED.values()), "metersPerUnit 0 is not a positive number", "are too many"]
-    for one, problem in zip(found[:-1], said, strict=True):
+    parts = [*(problem for _, problem in REFUSED.values()), "metersPerUnit 0 is not a positive number", "are too many"]
+    for one, problem in zip(found[:-1], parts, strict=True):
         assert problem in one["problem"]
         assert "\n" not in one["problem"]
     assert len(found[-1]["objects"]) == 4

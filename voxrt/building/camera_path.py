@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+from voxrt import sim
+from voxrt.errors import ToolError
+from voxrt.plans.open_workers import open_workers
+from voxrt.plans.workers import in_order
 from voxrt.views.pictures import render
 from voxrt.views.viewpoint import ViewpointError, aim_camera
 
@@ -105,42 +109,24 @@ def read_cameras(path: str | os.PathLike[str], rom: Rom, size: tuple[int, int]) 
     return [_camera(f"{path}: camera {number}", one, rom, size) for number, one in enumerate(entries)]
 
 
-def take_picture(job: PictureJob, number: int, camera: Camera) -> PathPicture | str:
-    """Render a picture, here or on a worker; returns it, or what is wrong."""
-    from voxrt.sim import check  # noqa: PLC0415 - most paths do without
+def take_picture(job: PictureJob, number: int, camera: Camera) -> PathPicture:
+    """Render a picture, here or on a worker.
 
+    Raises
+    ------
+    ToolError
+        It cannot be rendered.
+    """
+    arguments: dict[str, Any] = {field.name: getattr(job, field.name) for field in fields(job)}
+    both = arguments.pop("check")
     try:
-        if job.check:
-            checked = check(
-                job.rom,
-                camera,
-                job.size,
-                lighting=job.lighting,
-                samples=job.samples,
-                background=job.background,
-                config=job.config,
-                dram=job.dram,
-                root=job.root,
-                lod=job.lod,
-            )
-            frame: Frame = getattr(checked, job.engine)
-            return PathPicture(number, frame, checked.wrong_pixels)
-        frame = render(
-            job.rom,
-            camera,
-            size=job.size,
-            engine=job.engine,
-            config=job.config,
-            lighting=job.lighting,
-            samples=job.samples,
-            background=job.background,
-            dram=job.dram,
-            root=job.root,
-            lod=job.lod,
-        )
-    except Exception as error:  # noqa: BLE001 - not every exception can travel
-        return f"camera {number}: {error}"
-    return PathPicture(number, frame, None)
+        if not both:
+            return PathPicture(number, render(camera=camera, **arguments), None)
+        engine = arguments.pop("engine")
+        checked = sim.check(camera=camera, **arguments)
+        return PathPicture(number, getattr(checked, engine), checked.wrong_pixels)
+    except Exception as error:
+        raise ToolError(f"camera {number}: {error}") from error
 
 
 def take_pictures(
@@ -153,39 +139,28 @@ def take_pictures(
     ToolError
         A picture cannot be rendered, or the cluster is not there or lost.
     """
-    from voxrt.errors import ToolError  # noqa: PLC0415 - few paths need it
-
-    made: Iterator[Any]
-    if scheduler is None and workers is None:
-        made = (take_picture(job, number, camera) for number, camera in enumerate(cameras))
-    else:
-        from voxrt.plans.cluster import in_order  # noqa: PLC0415 - few paths do this
-
-        made = in_order(take_picture, job, cameras, scheduler=scheduler, workers=workers)
-    for one in made:
-        if isinstance(one, str):
-            raise ToolError(one)
-        yield one
+    with open_workers(scheduler, workers, remedy="start it, and this command, again") as found:
+        yield from in_order(found.completed(take_picture, list(enumerate(cameras)), (job,)))
 
 
-def _camera(where: str, said: object, rom: Rom, size: tuple[int, int]) -> Camera:
-    if not isinstance(said, dict) or not said.keys() <= _KEYS:
+def _camera(where: str, entry: object, rom: Rom, size: tuple[int, int]) -> Camera:
+    if not isinstance(entry, dict) or not entry.keys() <= _KEYS:
         raise ViewpointError(f"{where}: is not an object with position, look, right and up alone")
-    for name, value in said.items():
+    for name, value in entry.items():
         if not (isinstance(value, list) and len(value) == 3) or not all(
             isinstance(one, int | float) and not isinstance(one, bool) for one in value
         ):
             raise ViewpointError(f"{where}: {name} must be three numbers")
     try:
-        position = said.get("position")
+        position = entry.get("position")
         if position is not None:
             position = tuple(round(16 * one) for one in position)
-        look, right, up = (None if name not in said else _register(said[name]) for name in ("look", "right", "up"))
+        look, right, up = (None if name not in entry else _register(entry[name]) for name in ("look", "right", "up"))
         return aim_camera(rom, size, position=position, look=look, right=right, up=up)
     except (ValueError, TypeError, OverflowError) as error:
         raise ViewpointError(f"{where}: {error}") from None
 
 
-def _register(said: list[float]) -> tuple[int, int, int]:
-    x, y, z = said
+def _register(vector: list[float]) -> tuple[int, int, int]:
+    x, y, z = vector
     return int(x), int(y), int(z)

@@ -1,4 +1,4 @@
-"""Notebook cards of the front door's own values; importing this module registers them, and those of the rooms."""
+"""Notebook cards of voxrt's own values; importing this module registers them, and those of the rooms."""
 
 from __future__ import annotations
 

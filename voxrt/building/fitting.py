@@ -67,13 +67,7 @@ class InteriorFit:
 
 
 def find_material(asset: object, materials: Sequence[Material], wanted: int | str) -> int:
-    """Find the id of a material, one of those of an asset, that is asked for by name or by id.
-
-    Raises
-    ------
-    AssetError
-        None of them is it.
-    """
+    """Find the id of a material of an asset that is asked for by name or by id; AssetError if none of them is it."""
     names = [material.name for material in materials]
     if wanted in names[1:]:
         return 1 + names[1:].index(str(wanted))
@@ -86,8 +80,12 @@ def find_material(asset: object, materials: Sequence[Material], wanted: int | st
     )
 
 
-def fit_interior(rom: Rom, material: int | None) -> tuple[Rom, InteriorFit]:
-    """Give the hidden voxels of `rom` the material, or each what lets most blocks be shared."""
+def fit_interior(rom: Rom, wanted: int | str, asset: object) -> tuple[Rom, InteriorFit]:
+    """Give hidden voxels the material that is asked for, or with ``"any"`` each what lets most blocks be shared.
+
+    AssetError if the memory has no such material; `asset` is what the message calls it.
+    """
+    material = None if wanted == "any" else find_material(asset, rom.materials, wanted)
     whole, hidden = rom.octree, octree.hidden_voxels(rom.octree)
     tree = octree.share_hidden(whole, hidden) if material is None else octree.fill_hidden(whole, hidden, material)
     found = octree.census(hidden).solid_voxels

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from voxrt.export import WORD_SUFFIXES
 from voxrt.octree import RomError
-from voxrt.outputs import OutputError, check_folder
+from voxrt.outputs import OutputError, check_file, check_folder
 from voxrt.sources.source import as_text
 
 if TYPE_CHECKING:
@@ -17,44 +17,28 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class OutputFiles:
-    """Where a build writes.
+    """Where a build writes."""
 
-    Attributes
-    ----------
-    name
-        The name of the memory.
-    words
-        The file of words, its manifest beside it; None to write neither.
-    preview
-        The picture; None for none.
-    named
-        Whether the caller named the file of words, and not only its folder.
-    """
+    name: str  # the name of the memory
+    source: str  # what the manifest calls the asset
+    words: Path | None  # the file of words, its manifest beside it; None to write neither
+    preview: Path | None  # the picture; None for none
 
-    name: str
-    words: Path | None
-    preview: Path | None
-    named: bool = False
+    @property
+    def tiles(self) -> Path | None:
+        """The folder for tiles, while the build lasts."""
+        return None if self.words is None else self.words.with_name(f"{self.words.stem}.tiles")
 
 
 def output_files(
-    name: str, output: str | os.PathLike[str] | None, preview: str | os.PathLike[str] | bool
+    name: str,
+    file_name: str | None,
+    output: str | os.PathLike[str] | None,
+    preview: str | os.PathLike[str] | bool,
 ) -> OutputFiles:
-    """Return the files of a build, whose folders can be written to.
+    """Return the files of a build, which can be written. `file_name`: that of the asset; None for one in memory.
 
-    Parameters
-    ----------
-    name
-        The name of the asset, as text.
-    output
-        The folder, the file of words, or None.
-    preview
-        The picture's file, or whether one is wanted.
-
-    Raises
-    ------
-    OutputError
-        A folder cannot be written to, or `output` has the suffix of a file that a build does not write.
+    OutputError if a folder cannot be written to, or has a memory that was built from another asset of the same stem.
     """
     words, named = None, False
     if output is not None:
@@ -68,20 +52,15 @@ def output_files(
     if preview:
         folder = Path() if words is None else words.parent
         picture = folder / f"{name}.preview.png" if preview is True else Path(preview)
-        check_folder(picture.parent)
-        if picture.is_dir():
-            raise OutputError(f"{picture}: is a folder; name a file")
-    return OutputFiles(name, words, picture, named)
+        check_file(picture)
+    source = name if file_name is None else file_name
+    if words is not None and not named:
+        _refuse_other_asset(words, source)
+    return OutputFiles(name, source, words, picture)
 
 
-def refuse_other_asset(words: Path, source: str) -> None:
-    """Refuse to replace a memory that was built from another asset of the same stem.
-
-    Raises
-    ------
-    OutputError
-        The manifest beside `words` names another file than `source`.
-    """
+def _refuse_other_asset(words: Path, source: str) -> None:
+    """Refuse to replace a memory whose manifest names another file than `source`."""
     if not words.exists():
         return
     from voxrt.export import read_manifest  # noqa: PLC0415 - most builds replace nothing

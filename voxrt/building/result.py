@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from voxrt.octree import census
+from voxrt import export, octree
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from voxrt.building.baking import Bake
     from voxrt.building.fitting import BudgetFit, InteriorFit
     from voxrt.export import BakedLight, Blob, Source
     from voxrt.octree import Animation, Octree, Rom
@@ -84,7 +83,7 @@ class BuildResult:
     view: Camera | None = None
     lighting: Lighting | None = None
     source: Source | None = None
-    bake: Bake | None = None
+    bake: BakedLight | None = None
     animation: Animation | None = None
 
     def __repr__(self) -> str:
@@ -99,19 +98,13 @@ class BuildResult:
     @property
     def blob(self) -> Blob:
         """The memory with all that its files say, as :func:`voxrt.convert` takes it."""
-        from voxrt.export import Blob, Provenance  # noqa: PLC0415 - few need it, and every build would wait for it
-
-        told = Provenance(self.source, self.objects, self.warnings, self.seconds, self.baked)
-        return Blob(self.rom, self.view, self.lighting, told, self.animation)
+        provenance = export.Provenance(self.source, self.objects, self.warnings, self.seconds, self.bake)
+        return export.Blob(self.rom, self.view, self.lighting, provenance, self.animation)
 
     @property
     def baked(self) -> BakedLight | None:
         """The light that was baked, as the manifest tells it; None if no light was."""
-        if self.bake is None:
-            return None
-        from voxrt.export import BakedLight  # noqa: PLC0415 - as above
-
-        return BakedLight(**asdict(self.bake))
+        return self.bake
 
     @property
     def octree(self) -> Octree:
@@ -121,21 +114,17 @@ class BuildResult:
     @property
     def solid_voxels(self) -> int:
         """The number of voxels that are not empty."""
-        return census(self.rom.octree).solid_voxels
+        return octree.census(self.rom.octree).solid_voxels
 
     @property
     def coordinates(self) -> NDArray[np.int32]:
         """The solid voxels: int32, shape (N, 3), grid frame, in Morton order. :func:`voxrt.octree.to_points`."""
-        from voxrt.octree import to_points  # noqa: PLC0415 - as above
-
-        return to_points(self.rom.octree)[0]
+        return octree.to_points(self.rom.octree)[0]
 
     @property
     def material_ids(self) -> NDArray[np.uint8]:
         """The materials of `coordinates`: uint8, shape (N,), rows of ``rom.materials``."""
-        from voxrt.octree import to_points  # noqa: PLC0415 - as above
-
-        return to_points(self.rom.octree)[1]
+        return octree.to_points(self.rom.octree)[1]
 
     def to_dense(self) -> NDArray[np.uint8]:
         """Return material ids voxel by voxel: uint8, shape (S, S, S), indexed [x, y, z]; S = 2**depth, 0 is empty.
@@ -145,6 +134,4 @@ class BuildResult:
         DoesNotFitError
             The array would take more than 2 GiB; :func:`voxrt.octree.to_dense` returns a part of it.
         """
-        from voxrt.octree import to_dense  # noqa: PLC0415 - as above
-
-        return to_dense(self.rom.octree)
+        return octree.to_dense(self.rom.octree)

@@ -5,58 +5,32 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from voxrt import sim
 from voxrt.options.build_options import PREVIEW_SIZE
-from voxrt.views.viewpoint import ViewpointError, authored_camera, authored_lighting, stands_inside
+from voxrt.views.viewpoint import ViewpointError, aim_camera, authored_camera, authored_lighting, stands_inside
 from voxrt.voxelize import SceneWarning
 
 if TYPE_CHECKING:
-    from voxrt.octree import Rom
-    from voxrt.octree.camera import Camera, Lighting
+    from voxrt.building.result import BuildResult
+    from voxrt.octree.camera import Camera
     from voxrt.options.build_options import BuildOptions
     from voxrt.views.pictures import Picture
-    from voxrt.voxelize import Scene
 
 
-def preview(rom: Rom, camera: Camera, lighting: Lighting | None, options: BuildOptions) -> Picture:
-    """Render the preview of a build.
-
-    Raises
-    ------
-    SimulatorError
-        The engine cannot hold the memory, the camera or the light.
-    """
-    from voxrt.views.pictures import Picture, render  # noqa: PLC0415 - most builds make no picture
-
-    frame = render(
-        rom,
-        camera,
-        size=options.size,
-        engine=options.engine,
-        config="lit" if lighting is not None and lighting.features else "tiny",
-        lighting=lighting,
-        samples=options.samples,
-        background=options.background,
-        threads=options.threads,
-    )
-    return Picture(frame, camera, options.engine)
-
-
-def authored_view(
-    scene: Scene, rom: Rom, options: BuildOptions
-) -> tuple[Camera | None, Lighting | None, tuple[SceneWarning, ...]]:
-    """Return the author's camera and lighting for a memory, and a warning for each that cannot be used.
+def with_view(result: BuildResult, options: BuildOptions) -> BuildResult:
+    """Give a result the author's camera and lighting, and a warning for each that cannot be used.
 
     A memory with baked light is shown flat, and its author's light is not used.
     """
     view, lighting, unseen = None, None, []
-    grid = rom.grid
+    scene, grid = result.scene, result.rom.grid
     assert grid is not None
     if scene.viewpoint is not None:
         try:
             view = authored_camera(scene.viewpoint, grid, PREVIEW_SIZE)
         except ViewpointError as error:
             unseen.append(SceneWarning("camera", str(error)))
-    if view is not None and stands_inside(rom, view):
+    if view is not None and stands_inside(result.rom, view):
         unseen.append(
             SceneWarning("camera", "the scene's camera stands inside a solid; pictures show the whole scene instead")
         )
@@ -71,4 +45,37 @@ def authored_view(
         if lighting is not None and lighting.on:
             unseen.append(SceneWarning("light", "the scene's light is not used: the sun and the sky were baked"))
         lighting = FLAT if lighting is None else replace(FLAT, bounces=lighting.bounces)
-    return view, lighting, tuple(unseen)
+    return replace(result, view=view, lighting=lighting, warnings=(*result.warnings, *unseen))
+
+
+def preview(result: BuildResult, options: BuildOptions) -> Picture:
+    """Render the preview of a build: of an animation the first frame.
+
+    SimulatorError if the engine cannot hold the memory, the camera or the light; ViewpointError if there is no camera
+    for a picture of this size.
+    """
+    from voxrt.views.pictures import Picture, render  # noqa: PLC0415 - most builds make no picture
+
+    camera, lighting = _camera(result, options.size), result.lighting
+    frame = render(
+        result.rom,
+        camera,
+        size=options.size,
+        engine=options.engine,
+        config="lit" if lighting is not None and lighting.features else "tiny",
+        lighting=lighting,
+        samples=options.samples,
+        background=options.background,
+        threads=options.threads,
+    )
+    return Picture(frame, camera, options.engine)
+
+
+def _camera(result: BuildResult, size: tuple[int, int]) -> Camera:
+    """Return the author's camera if it can be used, or one that sees all of the scene, in all frames."""
+    viewpoint, grid = result.scene.viewpoint, result.rom.grid
+    if result.view is not None and viewpoint is not None and grid is not None:
+        return authored_camera(viewpoint, grid, size)
+    if result.animation is None:
+        return aim_camera(result.rom, size)
+    return sim.frame_animation(result.rom, result.animation.roots, size)

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from contextlib import ExitStack
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from voxrt import export
+from voxrt.building.view import preview
 from voxrt.export.atomic import write_together
 from voxrt.outputs import writing
+from voxrt.sim import SimulatorError
+from voxrt.views.viewpoint import ViewpointError
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -15,6 +19,11 @@ if TYPE_CHECKING:
     from voxrt.building.output_files import OutputFiles
     from voxrt.building.result import BuildResult
     from voxrt.options.build_options import BuildOptions
+    from voxrt.plans.stage_clock import StageClock
+
+
+_NAMED = ("fill", "interior", "geometry", "pow2", "up", "unit", "time", "animation", "variants", "colours", "bake")
+"""The options that every manifest names."""
 
 
 def named_settings(options: BuildOptions) -> dict[str, str | int | float | bool | None]:
@@ -26,19 +35,8 @@ def named_settings(options: BuildOptions) -> dict[str, str | int | float | bool 
     >>> named_settings(BuildOptions(colours=8))["colours"]
     8
     """
-    settings: dict[str, str | int | float | bool | None] = {
-        "fill": options.fill,
-        "interior": options.interior,
-        "geometry": options.geometry,
-        "pow2": options.pow2,
-        "up": options.up,
-        "unit": options.unit,
-        "time": options.time,
-        "animation": options.animation,
-        "variants": ", ".join(options.variants) or None,
-        "colours": options.colours,
-        "bake": options.bake,
-    }
+    settings: dict[str, str | int | float | bool | None] = {name: getattr(options, name) for name in _NAMED}
+    settings["variants"] = ", ".join(options.variants) or None
     if options.ignore:
         settings["ignore"] = ", ".join(options.ignore)
     if options.bounds is not None:
@@ -46,28 +44,29 @@ def named_settings(options: BuildOptions) -> dict[str, str | int | float | bool 
     return settings
 
 
-def write_build(files: OutputFiles, result: BuildResult, options: BuildOptions) -> dict[str, Path]:
-    """Write the set of files of a build, all of it or nothing.
+def write_result(
+    files: OutputFiles, result: BuildResult, options: BuildOptions, clock: StageClock
+) -> tuple[BuildResult, Exception | None]:
+    """Render the preview of a build and write its files, all of them or none, in the stages "preview" and "write".
 
-    Parameters
-    ----------
-    files
-        Where they go.
-    result
-        What was made; its own `outputs` do not count.
-    options
-        How it was made.
-
-    Returns
-    -------
-    dict of Path
-        The files by kind: ``"mem"``, ``"manifest"``, ``"preview"``.
-
-    Raises
-    ------
-    OutputError
-        A file cannot be written. Old files stay as they were.
+    Returns the result with its preview and its outputs, and the error why there is no preview. The memory is sound
+    then, so it is written, and an older preview is removed. OutputError if a file cannot be written: old files stay as
+    they were.
     """
+    error: Exception | None = None
+    if files.preview is not None:
+        with clock.stage("preview"):
+            try:
+                result = replace(result, preview=preview(result, options))
+            except (SimulatorError, ViewpointError) as problem:
+                error = problem
+    with clock.stage("write"):
+        result.outputs.update(_write(files, result, "lod" if options.lod else options.dialect))
+    return result, error
+
+
+def _write(files: OutputFiles, result: BuildResult, dialect: str) -> dict[str, Path]:
+    """Write the files; returns them by kind."""
     pictures: dict[Path, bytes | None] = {}
     if files.preview is not None:
         pictures[files.preview] = None
@@ -89,14 +88,14 @@ def write_build(files: OutputFiles, result: BuildResult, options: BuildOptions) 
                 result.rom,
                 stem=files.words.stem,
                 suffix=files.words.suffix,
-                dialect="lod" if options.lod else options.dialect,
+                dialect=dialect,
                 objects=result.objects,
                 warnings=result.warnings,
                 seconds=result.seconds,
                 source=result.source,
                 view=result.view,
                 lighting=result.lighting,
-                baked=result.baked,
+                baked=result.bake,
                 animation=result.animation,
                 beside=pictures,
             )

@@ -78,7 +78,7 @@ def _build(
             return voxrt.build(asset, output, options, progress=bar.begin, estimated=bar.estimate, clustered=bar.tiles)
         made: Path | list[Path] = asset
         if frames == "files" and (len(assets) > 1 or not asset.is_dir()):
-            from voxrt.building.animation_takes import natural_order  # noqa: PLC0415 - NumPy comes with it
+            from voxrt.sources.frames import natural_order  # noqa: PLC0415 - NumPy comes with it
 
             made = sorted(assets, key=natural_order)
         times = None if frames == "files" else voxrt.frame_times(*frames)
@@ -93,13 +93,13 @@ def check_company(assets: tuple[Path, ...], output: Path, preview: str | None) -
         raise UsageError(f"--preview {preview} is one picture for {len(assets)} assets; leave the file out")
     if output.suffix.lower() in voxrt.export.WORD_SUFFIXES and not output.is_dir():
         raise UsageError(f"-o {output} is one file for {len(assets)} assets; name a folder")
-    from voxrt.sources.source import asset_name  # noqa: PLC0415 - NumPy comes with it, and --help must be instant
+    from voxrt.sources.source import as_text  # noqa: PLC0415 - NumPy comes with it, and --help must be instant
 
     names: dict[str, Path] = {}
     for asset in assets:
         if not asset.is_file():
             raise voxrt.AssetError(asset, "no such file", fix="check the path; nothing was built")
-        name = asset_name(asset)
+        name = as_text(asset.stem)
         if name.casefold() in names:
             raise UsageError(
                 f"{names[name.casefold()]} and {asset} would both be written to {output / name}.mem; build them one "

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from rich.progress import Progress, TaskID
 
-    from voxrt.plans.cluster import ClusterProgress
+    from voxrt.plans.by_workers import ClusterProgress
     from voxrt.plans.estimate import BuildEstimate
 
 LONG = 60.0

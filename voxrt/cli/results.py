@@ -6,7 +6,6 @@ Programs rely on the names of the fields: new ones may come, none changes.
 from __future__ import annotations
 
 import math
-from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -192,7 +191,7 @@ def build_report(result: BuildResult, seconds: dict[str, float]) -> BuildReport:
         render=None if result.preview is None else render_result(result.preview),
         budget=None if result.budget is None else budget_entry(result.budget),
         interior=None if result.interior is None else _interior_entry(result.interior),
-        baked=None if result.bake is None else BakedEntry(**asdict(result.bake)),
+        baked=None if result.bake is None else BakedEntry(**msgspec.structs.asdict(result.bake)),
         frames=None if animation is None else FramesEntry(list(animation.roots), animation.words_alone),
     )
 

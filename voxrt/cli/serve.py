@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import gc
+import os
 import signal
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -27,15 +28,14 @@ if TYPE_CHECKING:
     from voxrt.serve.server import FrameServer
     from voxrt.serve.server_options import ServerOptions
 
-SERIAL = "serial:"
+SERIAL, TCP = "serial:", "tcp://"
 _port = Parameter(converter=whole, metavar="PORT")
 
 
 def serve(
     *scenes: Annotated[Path, Parameter(metavar="SCENE")],
-    device: Annotated[str, Parameter(metavar="model|sim|pynq|serial:PORT")] = "model",
+    device: Annotated[str, Parameter(metavar="model|sim|serial:PORT|tcp://BOARD:PORT")] = "model",
     config: Annotated[str, Parameter(metavar="NAME")] = "lit",
-    bitstream: Annotated[Path | None, Parameter(metavar="FILE")] = None,
     host: Annotated[str, Parameter(metavar="ADDRESS")] = "127.0.0.1",
     port: Annotated[int, _port] = 8080,
     token: Annotated[str | None, Parameter(metavar="TEXT")] = None,
@@ -53,12 +53,11 @@ def serve(
         Blobs, memories (.mem) and assets. The first is shown at once; the page lists all. Without scenes, the page
         lists examples and has a place to drop files.
     device
-        The renderer: the exact model, the simulated hardware, which is slow, the PYNQ board that runs this command, or
-        a board at a serial line, such as serial:/dev/ttyUSB0. Its monitor follows the page.
+        The renderer: the exact model, the simulated hardware, which is slow, a board at a serial line, such as
+        serial:/dev/ttyUSB0, whose monitor follows the page, or a PYNQ board that runs voxrt-board, such as
+        tcp://pynq:4810, with its token in the environment variable VOXRT_BOARD_TOKEN.
     config
         The configuration of the simulated hardware: tiny has no optional features, lit has all of them.
-    bitstream
-        The .bit of the PYNQ board, with its .hwh in the same folder.
     host
         Address to listen on. Every address but loopback needs a token.
     port
@@ -98,7 +97,7 @@ def serve(
     named = {name: _files(path) for name, path in scene_names(scenes or _examples()).items()}
     library = SceneLibrary(asset_reader(depth), named, asset_reader(depth, memory_depth=depth))
     options = ServerOptions(host, port, token, origin, legacy_port)
-    opened = open_device(device, config, bitstream)
+    opened = open_device(device, config)
     gc.set_threshold(USUAL_GARBAGE)
     with contextlib.suppress(asyncio.CancelledError):
         asyncio.run(_serve(opened, first, library, options, json=reporting.json))
@@ -112,30 +111,25 @@ def _examples() -> list[Path]:
     return sorted(path.resolve() for path in folder.iterdir() if path.suffix in ASSET_READER_SUFFIXES)
 
 
-def open_device(name: str, config: str, bitstream: Path | None = None) -> Device:
-    """Open a device of this machine: ``model``, ``sim``, ``pynq`` or ``serial:PORT``."""
+def open_device(name: str, config: str) -> Device:
+    """Open a device: ``model``, ``sim``, ``serial:PORT`` or ``tcp://BOARD:PORT``."""
     from voxrt.board.errors import DeviceError  # noqa: PLC0415 - it imports NumPy
-    from voxrt.board.pynq_device import open_pynq  # noqa: PLC0415
     from voxrt.board.simulated.core import open_rtl  # noqa: PLC0415
     from voxrt.board.simulated.model import ModelDevice  # noqa: PLC0415
+    from voxrt.board.tcp_device import TOKEN_VARIABLE, open_tcp  # noqa: PLC0415
 
     if name.lower() == "model":
         return ModelDevice()
     if name.lower() == "sim":
         return open_rtl(config)
-    if name.startswith(SERIAL):
-        try:
-            return open_serial_device(name.removeprefix(SERIAL))
-        except DeviceError as error:
-            raise voxrt.SimulatorError(str(error)) from error
-    if name.lower() != "pynq":
-        raise UsageError(f"--device {name} is no device; there are model, sim, pynq and serial:PORT")
-    if bitstream is None:
-        raise UsageError("--device pynq needs the ray tracer's --bitstream FILE")
     try:
-        return open_pynq(str(bitstream))
+        if name.startswith(SERIAL):
+            return open_serial_device(name.removeprefix(SERIAL))
+        if name.startswith(TCP):
+            return open_tcp(name, os.environ.get(TOKEN_VARIABLE, ""))
     except DeviceError as error:
         raise voxrt.SimulatorError(str(error)) from error
+    raise UsageError(f"--device {name} is no device; there are model, sim, serial:PORT and tcp://BOARD:PORT")
 
 
 def open_serial_device(port: str) -> SerialDevice:
@@ -154,12 +148,11 @@ def open_serial_device(port: str) -> SerialDevice:
 
 
 def _read_first(path: Path, depth: int | None) -> Scene:
-    from voxrt.board.errors import Refused  # noqa: PLC0415
     from voxrt.boards.board_scenes import load_scene  # noqa: PLC0415
 
     try:
         return load_scene(path, depth)
-    except (Refused, OSError) as error:  # a blob is read by serve.blob, which raises Refused
+    except OSError as error:
         raise voxrt.RomError(f"{path}: {error}") from error
 
 

@@ -16,7 +16,7 @@ from voxrt.cli.lighting import supported
 from voxrt.cli.messages import summarize
 from voxrt.cli.progress import transfer_bar
 from voxrt.cli.results import print_json
-from voxrt.cli.serve import SERIAL, open_device, open_serial_device
+from voxrt.cli.serve import SERIAL, TCP, open_device, open_serial_device
 
 if TYPE_CHECKING:
     from voxrt.board.device import Device
@@ -42,7 +42,8 @@ def upload(
         A blob, or a .mem file; its manifest, the .json in the same folder, is sent with it.
     to
         The address of the page, with its token, as the frame server printed it. Or the serial line of a board, such as
-        serial:/dev/ttyUSB0.
+        serial:/dev/ttyUSB0, or a PYNQ board that runs voxrt-board, such as tcp://pynq:4810, with its token in the
+        environment variable VOXRT_BOARD_TOKEN.
     device
         A device of this machine, to try the upload without a server.
     config
@@ -60,10 +61,14 @@ def upload(
     with transfer_bar() as progress:
         if to is not None and to.startswith(SERIAL):
             _write_serial(rom, scene, to.removeprefix(SERIAL), progress, dry_run=dry_run)
-        elif to is not None:
+        elif to is not None and not to.startswith(TCP):
             asyncio.run(_send(rom, scene, to, progress, dry_run=dry_run))
         else:
-            _write(scene, open_device(device or "model", config), progress, dry_run=dry_run)
+            opened = open_device(to or device or "model", config)
+            try:
+                _write(scene, opened, progress, dry_run=dry_run)
+            finally:
+                opened.close()
     done = "checked; nothing was written" if dry_run else "loaded"
     if reporting.json:
         print_json(UploadResult(scene.name, scene.depth, len(scene.words), scene.crc32, written=not dry_run))
@@ -72,12 +77,11 @@ def upload(
 
 
 def _read(path: Path) -> Scene:
-    from voxrt.board.errors import Refused  # noqa: PLC0415 - it imports NumPy
-    from voxrt.boards.board_scenes import load_scene  # noqa: PLC0415
+    from voxrt.boards.board_scenes import load_scene  # noqa: PLC0415 - it imports NumPy
 
     try:
         return load_scene(path)
-    except (Refused, OSError) as error:
+    except OSError as error:
         raise voxrt.RomError(f"{path}: {error}") from error
 
 

@@ -73,15 +73,6 @@ def estimate_build(scene: Scene, grid: Grid, options: BuildOptions) -> BuildEsti
     A triangle meets about as many voxels as its projection along the axis that it faces most has voxel areas, and half
     as many again beside them.
 
-    Parameters
-    ----------
-    scene
-        The scene, loaded.
-    grid
-        Its grid.
-    options
-        How it will be built.
-
     Examples
     --------
     >>> import voxrt

@@ -20,11 +20,14 @@ from threading import Thread
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from voxrt.errors import ToolError
+from voxrt.plans.workers import Workers, attempt, checked
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from concurrent.futures import Future
     from multiprocessing.connection import Connection
+
+    from voxrt.plans.workers import Failure
 
 T = TypeVar("T")
 
@@ -35,52 +38,38 @@ _MOST_LOST = 3
 _ENDING = (signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM))
 
 _shared: list[object] = []
-"""In a worker: the first argument of its tasks."""
+"""In a worker: the first arguments of its tasks."""
 
 
-def completed(
-    task: Callable[..., T], shared: object, arguments: Sequence[tuple[object, ...]], workers: int
-) -> Iterator[tuple[int, T]]:
-    """Call task(shared, *one) for each tuple of arguments, and yield its number and the result as tasks are done.
+class LocalWorkers(Workers):
+    """So many processes of this machine, each of which does one task at a time."""
 
-    Parameters
-    ----------
-    task
-        A function of a module.
-    shared
-        Its first argument, which each process gets once.
-    arguments
-        Its other arguments for each call.
-    workers
-        Processes, each of which does one task at a time.
-
-    Raises
-    ------
-    ToolError
-        Processes are killed again and again.
-    """
-    left, lost = dict(enumerate(arguments)), 0
-    while left:
-        try:
-            with _submitted(task, shared, left, workers) as futures:
-                for future in as_completed(futures):
-                    number, result = futures[future], future.result()
-                    del left[number]
-                    lost = 0
-                    yield number, result
-        except BrokenProcessPool:
-            lost += 1
-            if lost == _MOST_LOST:
-                raise ToolError(
-                    f"processes of this machine were killed {lost} times, perhaps for want of memory; take fewer "
-                    "--workers, or a smaller --memory"
-                ) from None
+    def completed(
+        self, task: Callable[..., T], calls: Sequence[tuple[object, ...]], shared: tuple[object, ...] = ()
+    ) -> Iterator[tuple[int, T]]:
+        """Do tasks, those of killed processes again."""
+        left, lost = dict(enumerate(calls)), 0
+        while left:
+            try:
+                with _submitted(task, shared, left, self.count) as futures:
+                    for future in as_completed(futures):
+                        number, result = futures[future], future.result()
+                        del left[number]
+                        lost = 0
+                        yield number, checked(result)
+            except BrokenProcessPool:
+                lost += 1
+                if lost == _MOST_LOST:
+                    raise ToolError(
+                        f"processes of this machine were killed {lost} times, perhaps for want of memory; take fewer "
+                        "--workers, or a smaller --memory"
+                    ) from None
 
 
 @contextmanager
 def _submitted(
-    task: Callable[..., T], shared: object, calls: dict[int, tuple[object, ...]], workers: int
-) -> Iterator[dict[Future[T], int]]:
+    task: Callable[..., T], shared: tuple[object, ...], calls: dict[int, tuple[object, ...]], workers: int
+) -> Iterator[dict[Future[T | Failure], int]]:
     """Start processes and submit calls by number; the processes end with the block, or with this process."""
     context: Any = get_context("fork" if _FORK else "spawn")
     alive, own = context.Pipe(duplex=False)  # closes when this process has ended, in whichever way
@@ -115,7 +104,7 @@ def _held_back() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _begin(alive: Connection, own: Connection | None, scratch: str, shared: object) -> None:
+def _begin(alive: Connection, own: Connection | None, scratch: str, shared: tuple[object, ...]) -> None:
     """Begin a worker: give up what a fork has of the process that it is a fork of."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for that process
     for number in _ENDING:
@@ -127,7 +116,7 @@ def _begin(alive: Connection, own: Connection | None, scratch: str, shared: obje
         own.close()
     Thread(target=_end_with, args=(alive,), daemon=True).start()
     os.environ["TMPDIR"] = tempfile.tempdir = scratch  # what a killed worker leaves goes with it
-    _shared[:] = [shared]
+    _shared[:] = shared
 
 
 def _end_with(alive: Connection) -> None:
@@ -137,5 +126,5 @@ def _end_with(alive: Connection) -> None:
         os._exit(1)
 
 
-def _call(task: Callable[..., T], arguments: tuple[object, ...]) -> T:
-    return task(_shared[0], *arguments)
+def _call(task: Callable[..., T], call: tuple[object, ...]) -> T | Failure:
+    return attempt(task, *_shared, *call)

@@ -13,10 +13,7 @@ if TYPE_CHECKING:
 class StageClock:
     """The stages of a build and the seconds that each took, without those of a stage within it.
 
-    Parameters
-    ----------
-    progress
-        Called with the name of each stage as it begins for the first time.
+    `progress` is called with the name of each stage as it begins for the first time.
 
     Examples
     --------

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 
 from voxrt.export.atomic import write_atomically
-from voxrt.octree import Octree
+from voxrt.octree import Assembly, DiskAssembly, Octree
 from voxrt.outputs import OutputError
 from voxrt.voxelize import AssetError, DoesNotFitError
 
@@ -27,6 +27,7 @@ except ImportError:  # no POSIX system: nobody tells whether another build uses 
     fcntl = None  # type: ignore[assignment]
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
     from types import TracebackType
 
@@ -38,19 +39,15 @@ _HEADER = struct.Struct("<8s16sIIqq")  # magic, key, depth, 0, words, rows of ta
 _MAGIC = b"voxrtil2"
 _CRC32 = struct.Struct("<I")
 _TALLIES = 5  # numbers per row: the object, and its tally
+_BYTES_OF_BLOCK = 32
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Tile:
     """A finished tile, or several that were joined.
 
-    Attributes
-    ----------
-    octree
-        The octree of the whole world, empty outside of the tile.
-    tallies
-        What the tile has of the objects that it reaches: int64, shape (N, 5), the number of an object and its row of
-        :meth:`voxrt.voxelize.BlockVoxelizer.voxelize`.
+    The octree is of the whole world, empty outside of the tile. The tallies are of the objects that it reaches: int64,
+    shape (N, 5), the number of an object and its row of :meth:`voxrt.voxelize.BlockVoxelizer.voxelize`.
     """
 
     octree: Octree
@@ -83,13 +80,7 @@ def sum_tallies(tallies: NDArray[np.int64], objects: int) -> NDArray[np.int64]:
 
 
 def write_tile(path: Path, key: str, tile: Tile) -> int:
-    """Write a tile, whole or not at all; returns its bytes.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
-    """
+    """Write a tile, whole or not at all, and return its bytes; OSError if the file cannot be written."""
     tallies = np.ascontiguousarray(tile.tallies, "<i8")
     words = np.ascontiguousarray(tile.octree.words, "<u4")
     header = _HEADER.pack(_MAGIC, bytes.fromhex(key), tile.octree.depth, 0, len(words), len(tallies))
@@ -132,6 +123,28 @@ def tile_name(block: ColumnBlock) -> str:
     return f"{block.x}-{block.y}"
 
 
+class MemoryTiles:
+    """Tiles for which there is no folder: they are joined in memory as they are made."""
+
+    def __init__(self, depth: int) -> None:
+        self._whole = Assembly(depth)
+
+    def claim(self, _key: str, side: int) -> int:
+        """Return `side`: no tile is there yet."""
+        return side
+
+    def read(self, _name: str) -> None:
+        """Return None: no tile is there yet."""
+
+    def write(self, _name: str, tile: Tile) -> None:
+        """Join a tile to those before it."""
+        self._whole.add(tile.octree)
+
+    def join(self, _names: Iterable[str], _depth: int, _cache: int) -> Octree:
+        """Return the octree of all tiles."""
+        return self._whole.octree()
+
+
 _locks: set[int] = set()
 """Descriptors of folders that this process has locked."""
 
@@ -150,15 +163,9 @@ if hasattr(os, "register_at_fork"):
 class TileStore:
     """The folder of the tiles of one build, locked from :meth:`claim` to the end of the ``with`` block.
 
-    The folder goes when the block ends, or fails because the asset is unsound. It stays if the block is interrupted or
-    fails otherwise.
-
-    Parameters
-    ----------
-    folder
-        ``NAME.tiles`` beside the output.
-    key
-        What tells builds apart, for whoever reads and writes tiles while another process has the folder locked.
+    The folder, ``NAME.tiles`` beside the output, goes when the block ends, or fails because the asset is unsound. It
+    stays if the block is interrupted or fails otherwise. Whoever reads and writes tiles while another process has the
+    folder locked gives the key of the build.
     """
 
     def __init__(self, folder: Path, key: str = "") -> None:
@@ -184,24 +191,10 @@ class TileStore:
         self._lock = None
 
     def claim(self, key: str, side: int) -> int:
-        """Make the folder, lock it, and remove the tiles of another key.
+        """Make the folder, lock it, and remove the tiles of another key: 32 hexadecimal digits that tell builds apart.
 
-        Parameters
-        ----------
-        key
-            What tells builds apart: 32 hexadecimal digits.
-        side
-            Columns per side of a tile, for new tiles.
-
-        Returns
-        -------
-        int
-            Columns per side of the tiles that are there, if these take at most four times the memory; else `side`.
-
-        Raises
-        ------
-        OutputError
-            The folder cannot be made, is somebody else's, or another build uses it.
+        Returns the columns per side of the tiles that are there, if these take at most four times the memory; else
+        `side`. OutputError if the folder cannot be made, is somebody else's, or another build uses it.
         """
         self.key = key
         try:
@@ -231,21 +224,39 @@ class TileStore:
         """Return a finished tile, or None."""
         return read_tile(self.path(name), self.key)
 
-    def write(self, name: str, tile: Tile) -> int:
-        """Keep a finished tile; returns its bytes.
+    def write(self, name: str, tile: Tile) -> None:
+        """Keep a finished tile; OutputError if it cannot be written, most often because the disk is full."""
+        try:
+            write_tile(self.path(name), self.key, tile)
+        except OSError as error:
+            raise _unwritten(self.path(name), error) from error
 
-        Raises
-        ------
-        OutputError
-            The disk is full, most often.
+    def missing(self, name: str) -> str:
+        """Return what errors say of a tile that should be there."""
+        return f"{self.path(name)}: is missing or damaged; build again, which makes it anew"
+
+    def join(self, names: Iterable[str], depth: int, cache: int) -> Octree:
+        """Join finished tiles to the octree of the world; OutputError if one is missing, or the disk is full.
+
+        `cache` is the bytes of memory for blocks: these go to the disk, and the words to the file `words`. With 0 all
+        are joined in memory.
         """
         try:
-            return write_tile(self.path(name), self.key, tile)
+            whole: DiskAssembly | Assembly
+            if cache:
+                whole = DiskAssembly(depth, self.folder, cache=cache)
+            else:
+                names = tuple(names)
+                sizes = (path.stat().st_size for path in map(self.path, names) if path.exists())
+                whole = Assembly(depth, expected_blocks=min(sum(sizes) // _BYTES_OF_BLOCK, 1 << 28))
+            for name in names:
+                tile = self.read(name)
+                if tile is None:
+                    raise OutputError(self.missing(name))
+                whole.add(tile.octree)
+            return whole.octree() if isinstance(whole, Assembly) else whole.octree(self.words)
         except OSError as error:
-            raise OutputError(
-                f"{self.path(name)}: cannot be written: {error.strerror or error}; finished tiles stay, and the same "
-                "build goes on from them"
-            ) from error
+            raise _unwritten(self.folder, error) from error
 
     def _take(self, lock: int, side: int) -> int:
         if fcntl is not None:
@@ -281,3 +292,10 @@ class TileStore:
     @property
     def _key_file(self) -> Path:
         return self.folder / "key"
+
+
+def _unwritten(path: Path, error: OSError) -> OutputError:
+    return OutputError(
+        f"{path}: cannot be written: {error.strerror or error}; finished tiles stay, and the same build goes on from "
+        "them"
+    )

@@ -43,33 +43,14 @@ def is_trimesh(value: object) -> TypeGuard[trimesh.Trimesh | trimesh.Scene]:
 def trimesh_scene(
     value: trimesh.Trimesh | trimesh.Scene, *, name: str = "mesh", up: UpAxis | None = None, unit: float | None = None
 ) -> Scene:
-    """Make a scene of a mesh or a scene of trimesh.
+    """Make a scene of a mesh or a scene of trimesh: an object per instance, in the order of the graph's nodes.
 
     Instances of one geometry share its mesh. Vertex colours, face colours, textures with their coordinates, and the
-    base colours of materials are honoured. A ``baseColorFactor`` is linear, as in glTF; other colours are sRGB.
+    base colours of materials are honoured. A ``baseColorFactor`` is linear, as in glTF; other colours are sRGB. What a
+    scene holds besides triangles is left out, with a warning. `name`, `up` and `unit` are as for :func:`mesh_scene`.
 
-    Parameters
-    ----------
-    value
-        The mesh, or the scene. What a scene holds besides triangles is left out, with a warning.
-    name
-        The name of the scene, which names its files.
-    up
-        The up axis. The default is y.
-    unit
-        Metres per unit. The default is 1.
-
-    Returns
-    -------
-    Scene
-        An object per instance, in the order of the graph's nodes.
-
-    Raises
-    ------
-    ValueError
-        A vertex that is not finite, or a face that names no vertex.
-    DoesNotFitError
-        More than 255 materials.
+    ValueError for a vertex that is not finite, or a face that names no vertex; DoesNotFitError for more than 255
+    materials.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Which objects a build voxelizes, and what it says where they get nothing."""
+"""Which objects and which camera of a scene a build uses, and what it says where objects get no voxel."""
 
 from __future__ import annotations
 
@@ -12,23 +12,13 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from voxrt.options.build_options import BuildOptions
-    from voxrt.voxelize import Grid, ObjectReport, Scene
+    from voxrt.voxelize import Grid, ObjectReport, Scene, Viewpoint
 
 
 def without_objects(label: str, scene: Scene, names: Sequence[str]) -> Scene:
     """Return a scene without the objects of these names, and without those below these prim paths.
 
-    Parameters
-    ----------
-    label
-        What errors call the asset.
-    scene, names
-        The scene, and the names.
-
-    Raises
-    ------
-    AssetError
-        No object has such a name, or none is left.
+    AssetError if no object has such a name, or none is left; `label` is what the message calls the asset.
 
     Examples
     --------
@@ -48,6 +38,28 @@ def without_objects(label: str, scene: Scene, names: Sequence[str]) -> Scene:
     if not kept:
         raise AssetError(label, "nothing is left to voxelize", fix="ignore fewer objects")
     return replace(scene, objects=kept) if names else scene
+
+
+def named_camera(label: str, scene: Scene, name: str) -> Viewpoint:
+    """Return the author's camera with a name, or with a number, counted from 0.
+
+    AssetError if the scene has no such camera; `label` is what the message calls it.
+
+    Examples
+    --------
+    >>> from voxrt.voxelize import EMPTY, Scene, Viewpoint
+    >>> cameras = Viewpoint((1, 1, 1), (0, 0, 0), name="left"), Viewpoint((9, 1, 1), (0, 0, 0), name="right")
+    >>> named_camera("yard", Scene("yard", (), (EMPTY,), cameras=cameras), "right").eye
+    (9.0, 1.0, 1.0)
+    """
+    found = [camera for camera in scene.cameras if camera.name == name]
+    if not found and name.isdecimal() and int(name) < len(scene.cameras):
+        found = [scene.cameras[int(name)]]
+    if not found:
+        names = ", ".join(camera.name or str(number) for number, camera in enumerate(scene.cameras))
+        there, fix = (f"there are {names}", "name one of these") if names else ("it has none", "leave it out")
+        raise AssetError(label, f"there is no camera {name!r}: {there}", fix=fix)
+    return found[0]
 
 
 def crowded_out(scene: Scene, grid: Grid, options: BuildOptions) -> tuple[SceneWarning, ...]:
@@ -74,12 +86,7 @@ def crowded_out(scene: Scene, grid: Grid, options: BuildOptions) -> tuple[SceneW
 
 
 def refuse_empty(label: str, grid: Grid, objects: Sequence[ObjectReport]) -> None:
-    """Refuse a scene of which no object got a voxel.
-
-    Raises
-    ------
-    DoesNotFitError
-        There is no solid voxel.
+    """Refuse a scene of which no object got a voxel, with a DoesNotFitError.
 
     Examples
     --------

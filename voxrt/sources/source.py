@@ -1,13 +1,14 @@
-"""What a build can start from: a file, arrays, a mesh of trimesh, a scene."""
+"""What a build starts from: an asset, opened once. Later steps ask the source and not the asset."""
 
 from __future__ import annotations
 
 import os
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias, Union
 
 from voxrt import voxelize
+from voxrt.sources.object_selection import named_camera, without_objects
 from voxrt.voxelize import AssetError, Scene, SceneWarning
 
 if TYPE_CHECKING:
@@ -22,57 +23,46 @@ Asset: TypeAlias = Union[
 """A file's path; a scene; vertices (V, 3) and faces (F, 3); a mesh or a scene of trimesh."""
 
 
-def asset_name(asset: Asset) -> str:
-    """Return the name that the files of a build get.
-
-    Examples
-    --------
-    >>> asset_name("examples/house.obj")
-    'house'
-    """
-    if isinstance(asset, str | os.PathLike):
-        return as_text(Path(asset).stem)
-    if isinstance(asset, Scene):
-        return as_text(asset.name)
-    from voxrt.sources.from_trimesh import is_trimesh  # noqa: PLC0415 - files do not need it
-
-    if is_trimesh(asset):
-        return as_text(Path(str(asset.metadata.get("name") or asset.metadata.get("file_name") or "mesh")).stem)
-    return "mesh"
-
-
-def asset_label(asset: Asset) -> str:
-    """Return what errors call an asset: the file's path as it was given, else its name.
-
-    Examples
-    --------
-    >>> asset_label("examples/house.obj")
-    'examples/house.obj'
-    """
-    return os.fspath(asset) if isinstance(asset, str | os.PathLike) else asset_name(asset)
-
-
-def load_asset(asset: Asset, options: BuildOptions) -> Scene:
-    """Load a file, or make a scene of what is in memory.
-
-    Raises
-    ------
-    TypeError, ValueError
-        The asset is nothing that can be built, or its arrays are not those of a mesh.
-    AssetError
-        The file cannot be read, is malformed, or says something that cannot be honoured.
-    DoesNotFitError
-        More than 255 materials.
+@dataclass(frozen=True, eq=False, slots=True)
+class Source:
+    """An asset that is opened, and the options of its build.
 
     Examples
     --------
     >>> from voxrt import BuildOptions
-    >>> load_asset("examples/house.obj", BuildOptions()).name
-    'house'
+    >>> source = open_source("examples/house.obj", BuildOptions())
+    >>> source.name, source.label, source.load().name
+    ('house', 'examples/house.obj', 'house')
     """
-    if isinstance(asset, str | os.PathLike):
-        return voxelize.load(
-            Path(asset),
+
+    options: BuildOptions  # how the asset is loaded and built
+    name: str  # what the files of the build are called
+    label: str  # what errors call the asset: the path of its file as it was given, else its name
+    file: Path | None = None  # None for an asset in memory
+    value: object = None  # the asset in memory; None for a file
+
+    @property
+    def file_name(self) -> str | None:
+        """The name of the file as text; None for an asset in memory."""
+        return None if self.file is None else as_text(self.file.name)
+
+    def load(self) -> Scene:
+        """Load the scene, without the objects that the options ignore.
+
+        Raises
+        ------
+        TypeError, ValueError
+            The asset is nothing that can be built, or its arrays are not those of a mesh.
+        AssetError
+            The file cannot be read, is malformed, or says something that cannot be honoured.
+        DoesNotFitError
+            More than 255 materials.
+        """
+        options = self.options
+        if self.file is None:
+            return without_objects(self.label, self._value_scene(), options.ignore)
+        scene = voxelize.load(
+            self.file,
             up=options.up,
             unit=options.unit,
             time=options.time,
@@ -80,28 +70,59 @@ def load_asset(asset: Asset, options: BuildOptions) -> Scene:
             variants=tuple(options.variants),
             allow_outside=options.allow_outside,
         )
-    from voxrt.sources.from_arrays import mesh_scene  # noqa: PLC0415 - as above
-    from voxrt.sources.from_trimesh import is_trimesh, trimesh_scene  # noqa: PLC0415
+        return without_objects(self.label, scene, options.ignore)
 
-    unused = {"time": options.time, "animation": options.animation, "variants": options.variants}
-    if isinstance(asset, Scene):
-        scene, unused = asset, unused | {"up": options.up, "unit": options.unit}
-    elif is_trimesh(asset):
-        scene = trimesh_scene(asset, name=asset_name(asset), up=options.up, unit=options.unit)
-    elif isinstance(asset, tuple) and len(asset) == 2:
-        vertices, faces = asset
-        scene = mesh_scene(vertices, faces, up=options.up, unit=options.unit)
-    else:
-        raise TypeError(
-            "asset must be a file's path, a Scene, (vertices, faces), a trimesh.Trimesh or a trimesh.Scene, "
-            f"not {type(asset).__name__}"
+    def with_camera(self, scene: Scene) -> Scene:
+        """Return a scene with the author's camera that the options name; AssetError if it has no such camera."""
+        name = self.options.camera
+        return scene if name is None else replace(scene, viewpoint=named_camera(self.label, scene, name))
+
+    def refuse_warnings(self, warnings: tuple[SceneWarning, ...]) -> None:
+        """Raise AssetError with the first of the warnings, if there is one and the options are strict."""
+        if warnings and self.options.strict:
+            first, *others = warnings
+            kinds = sorted({warning.kind for warning in others})
+            more = f"; and {len(others)} more ({', '.join(kinds)})" if others else ""
+            raise AssetError(self.label, f"{first.message}{more}", fix="correct the asset, or build without strict")
+
+    def _value_scene(self) -> Scene:
+        from voxrt.sources.from_arrays import mesh_scene  # noqa: PLC0415 - files do not need it
+        from voxrt.sources.from_trimesh import is_trimesh, trimesh_scene  # noqa: PLC0415
+
+        value, options = self.value, self.options
+        unused = {"time": options.time, "animation": options.animation, "variants": options.variants}
+        if isinstance(value, Scene):
+            scene, unused = value, unused | {"up": options.up, "unit": options.unit}
+        elif is_trimesh(value):
+            scene = trimesh_scene(value, name=self.name, up=options.up, unit=options.unit)
+        elif isinstance(value, tuple) and len(value) == 2:
+            scene = mesh_scene(*value, up=options.up, unit=options.unit)
+        else:
+            raise TypeError(
+                "asset must be a file's path, a Scene, (vertices, faces), a trimesh.Trimesh or a trimesh.Scene, "
+                f"not {type(value).__name__}"
+            )
+        ignored = tuple(
+            SceneWarning("ignored-option", f"{name} was ignored: it is for files that have it")
+            for name, option in unused.items()
+            if option not in (None, ())
         )
-    ignored = tuple(
-        SceneWarning("ignored-option", f"{name} was ignored: it is for files that have it")
-        for name, value in unused.items()
-        if value not in (None, ())
-    )
-    return replace(scene, warnings=scene.warnings + ignored)
+        return replace(scene, warnings=scene.warnings + ignored)
+
+
+def open_source(asset: Asset, options: BuildOptions) -> Source:
+    """Open an asset. Nothing is read before :meth:`Source.load`, which refuses what is no asset."""
+    if isinstance(asset, str | os.PathLike):
+        return Source(options, as_text(Path(asset).stem), os.fspath(asset), file=Path(asset))
+    name = "mesh"
+    if isinstance(asset, Scene):
+        name = as_text(asset.name)
+    else:
+        from voxrt.sources.from_trimesh import is_trimesh  # noqa: PLC0415 - files do not need it
+
+        if is_trimesh(asset):
+            name = as_text(Path(str(asset.metadata.get("name") or asset.metadata.get("file_name") or name)).stem)
+    return Source(options, name, name, value=asset)
 
 
 def as_text(name: str) -> str:
@@ -114,18 +135,3 @@ def as_text(name: str) -> str:
     """
     text = os.fsencode(name).decode("utf-8", "replace")
     return text.translate({0xFFFD: "_", ord("\\"): "_"})
-
-
-def refuse_warnings(asset: Asset, warnings: tuple[SceneWarning, ...], options: BuildOptions) -> None:
-    """Refuse what a build warns of, if it is strict.
-
-    Raises
-    ------
-    AssetError
-        There is a warning; the message is that of the first.
-    """
-    if warnings and options.strict:
-        first, *others = warnings
-        kinds = sorted({warning.kind for warning in others})
-        more = f"; and {len(others)} more ({', '.join(kinds)})" if others else ""
-        raise AssetError(asset_label(asset), f"{first.message}{more}", fix="correct the asset, or build without strict")

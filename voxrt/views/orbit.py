@@ -18,28 +18,9 @@ if TYPE_CHECKING:
 def orbit(rom: Rom, size: tuple[int, int], count: int = 128, *, roots: Sequence[int] = (0,)) -> list[Camera]:
     """Make cameras on a circle around a scene: the default view, turned about the vertical in equal steps.
 
-    The scene fits each picture: the first camera sees the upright cylinder around it.
-
-    Parameters
-    ----------
-    rom
-        The scene.
-    size
-        Columns and rows of the pictures.
-    count
-        How many cameras, 1 ... 4096.
-    roots
-        Those of the frames of an animation: all of them fit.
-
-    Returns
-    -------
-    list of Camera
-        Counterclockwise, seen from above.
-
-    Raises
-    ------
-    TypeError, ValueError
-        An argument is not of the right type or out of range.
+    The first camera sees the upright cylinder around the scene, so the scene fits each picture; so do all frames of an
+    animation, whose `roots` are given. The cameras, 1 ... 4096, are counterclockwise, seen from above. TypeError or
+    ValueError where an argument is of the wrong type or out of range.
 
     Examples
     --------

@@ -14,7 +14,7 @@ from voxrt.octree import Rom
 from voxrt.octree.camera import PLAIN_LIGHTING, refit
 from voxrt.options.backgrounds import read_background
 from voxrt.options.build_options import PREVIEW_SIZE
-from voxrt.outputs import OutputError, check_folder, writing
+from voxrt.outputs import check_file, writing
 from voxrt.views.viewpoint import aim_camera
 from voxrt.voxelize.arguments import instance, whole_array
 
@@ -196,9 +196,7 @@ def save_animation(pictures: Iterable[ArrayLike], path: str | os.PathLike[str], 
     if not arrays or len({array.shape for array in arrays}) > 1:
         raise ValueError("pictures must be one or more, all of one size")
     path = Path(path)
-    check_folder(path.parent)
-    if path.is_dir():
-        raise OutputError(f"{path}: is a folder; name a file")
+    check_file(path)
     with writing(path):
         write_gif(path, arrays, period)
 
@@ -228,8 +226,6 @@ def save_picture(colour: ArrayLike, path: str | os.PathLike[str]) -> None:
     channels = 4 if np.shape(colour)[-1:] == (4,) else 3
     pixels = whole_array("colour", colour, ("H", "W", channels), np.uint8, low=0, high=255)
     path = Path(path)
-    check_folder(path.parent)
-    if path.is_dir():
-        raise OutputError(f"{path}: is a folder; name a file")
+    check_file(path)
     with writing(path):
         sim.write_png(path, pixels)

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from voxrt import octree, sim
 from voxrt.octree import Rom
 from voxrt.octree.camera import THREE_QUARTER, Camera, Lighting, eye_that_sees, focal_length, look_at
-from voxrt.voxelize import AssetError
 from voxrt.voxelize.arguments import instance, whole_array
 
 if TYPE_CHECKING:
@@ -85,12 +85,8 @@ def aim_camera(
     position = _triple("position", position, 1 << 31)
     look, right, up = _triple("look", look), _triple("right", right), _triple("up", up)
     if position is None and (look, right, up) == (None, None, None):
-        from voxrt.sim import frame_scene  # noqa: PLC0415 - slow to import, and most builds make no picture
-
-        return frame_scene(rom, size)
-    from voxrt.sim import outline  # noqa: PLC0415 - as above
-
-    points = outline(rom.octree)
+        return sim.frame_scene(rom, size)
+    points = sim.outline(rom.octree)
     if look is None or right is None or up is None:
         sight = np.array(THREE_QUARTER)
         if position is not None:
@@ -107,21 +103,9 @@ def aim_camera(
 
 
 def authored_camera(viewpoint: Viewpoint, grid: Grid, size: tuple[int, int]) -> Camera:
-    """Make the camera of the scene's author.
+    """Make the camera of the scene's author (scene frame) for pictures of `size` pixels, on a grid.
 
-    Parameters
-    ----------
-    viewpoint
-        The author's camera, scene frame.
-    grid
-        The place of the voxels in the scene.
-    size
-        Width and height of the picture, pixels.
-
-    Raises
-    ------
-    ViewpointError
-        The camera is too far away for the registers, or its `up` points along the line of sight.
+    ViewpointError if it is too far away for the registers, or its `up` points along the line of sight.
 
     Examples
     --------
@@ -145,46 +129,15 @@ def authored_camera(viewpoint: Viewpoint, grid: Grid, size: tuple[int, int]) -> 
         raise ViewpointError(f"the scene's camera: {error}") from error
 
 
-def named_camera(label: str, scene: Scene, name: str) -> Viewpoint:
-    """Return the author's camera with a name, or with a number, counted from 0.
-
-    Raises
-    ------
-    AssetError
-        The scene has no such camera; `label` is what the message calls it.
-
-    Examples
-    --------
-    >>> from voxrt.voxelize import EMPTY, Scene, Viewpoint
-    >>> cameras = Viewpoint((1, 1, 1), (0, 0, 0), name="left"), Viewpoint((9, 1, 1), (0, 0, 0), name="right")
-    >>> named_camera("yard", Scene("yard", (), (EMPTY,), cameras=cameras), "right").eye
-    (9.0, 1.0, 1.0)
-    """
-    found = [camera for camera in scene.cameras if camera.name == name]
-    if not found and name.isdecimal() and int(name) < len(scene.cameras):
-        found = [scene.cameras[int(name)]]
-    if not found:
-        names = ", ".join(camera.name or str(number) for number, camera in enumerate(scene.cameras))
-        there, fix = (f"there are {names}", "name one of these") if names else ("it has none", "leave it out")
-        raise AssetError(label, f"there is no camera {name!r}: {there}", fix=fix)
-    return found[0]
-
-
 def stands_inside(rom: Rom, camera: Camera) -> bool:
     """Tell whether a camera stands inside a solid voxel: its picture would show nothing else."""
-    voxel = [[place >> 4 for place in camera.position]]
-    from voxrt.octree import material_at  # noqa: PLC0415 - as above
-
-    return bool(material_at(rom.octree, voxel)[0])
+    return bool(octree.material_at(rom.octree, [[place >> 4 for place in camera.position]])[0])
 
 
 def authored_lighting(scene: Scene, grid: Grid) -> Lighting | None:
     """Make the lighting of the scene's author: the light if there is one, mirrors if materials are mirrors.
 
-    Raises
-    ------
-    ViewpointError
-        The light is too far away for the registers.
+    ViewpointError if the light is too far away for the registers.
     """
     bounces = _BOUNCES if any(material.mirror for material in scene.materials) else 0
     if scene.light is None:

@@ -26,13 +26,8 @@ if TYPE_CHECKING:
 class Writer:
     """How the files of one suffix are written.
 
-    Attributes
-    ----------
-    form
-        What the file is, for people.
-    write_pane
-        Writes the octants that a pane shows: all of a memory, or those that a cut leaves. None for files that hold a
-        memory with its words.
+    `form` is what the file is, for people. `write_pane` writes the octants that a pane shows: all of a memory, or those
+    that a cut leaves. It is None for files that hold a memory with its words.
     """
 
     form: str

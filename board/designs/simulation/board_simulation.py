@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..build import RTL, list_sources, parameters, top_of
+from voxrt.board.designs.build import RTL, list_sources, parameters, top_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

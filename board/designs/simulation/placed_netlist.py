@@ -10,7 +10,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..base_design import read_block_rams
+from voxrt.board.designs.base_design import read_block_rams
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -241,9 +241,9 @@ class _Writer:
         """Give what a pin always is; None if that changes."""
         bit = self.net(cell, pin)
         chosen = cell["parameters"].get(f"{pin}MUX", "").strip()
-        for given in (chosen, bit):
-            if given in {"0", "1"}:
-                return int(given)
+        for level in (chosen, bit):
+            if level in {"0", "1"}:
+                return int(level)
         drivers = [
             other
             for other in self._module["cells"].values()

@@ -69,7 +69,7 @@ def test_every_format_gives_its_normals(tmp_path, suffix):
 
 
 @pytest.mark.parametrize(
-    ("normals", "given"),
+    ("normals", "expected_normals"),
     [
         ('uniform token orientation = "rightHanded"', None),
         ('normal3f[] normals = [(0, 2, 0), (0, 3, 4)] (interpolation = "uniform")', [[UNIT[0]] * 3, [UNIT[1]] * 3]),
@@ -87,13 +87,13 @@ def test_every_format_gives_its_normals(tmp_path, suffix):
         ('normal3f[] normals = [(0, 1, 0), (0, 1, 0)] (interpolation = "vertex")', None),  # too few
     ],
 )
-def test_normals_of_usd_by_their_interpolation(tmp_path, normals, given):
+def test_normals_of_usd_by_their_interpolation(tmp_path, normals, expected_normals):
     write_usd(tmp_path / "sheet.usda", normals)
     (thing,) = load_usd(tmp_path / "sheet.usda").objects
-    if given is None:
+    if expected_normals is None:
         assert thing.mesh.normals is None
     else:
-        np.testing.assert_allclose(thing.mesh.normals.of_corners(), given, atol=1e-6)
+        np.testing.assert_allclose(thing.mesh.normals.of_corners(), expected_normals, atol=1e-6)
 
 
 def test_normals_of_gltf_that_do_not_fit_are_ignored_with_a_warning(tmp_path):
@@ -127,7 +127,7 @@ def test_a_morphed_mesh_has_none(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("faces", "given"),
+    ("faces", "vertices"),
     [
         ("f 1/1/-4 3/1/-2 2/1/-3", (0, 2, 1)),
         ("f 1//1 3 2//2", (0, None, 1)),
@@ -135,11 +135,11 @@ def test_a_morphed_mesh_has_none(tmp_path):
         ("f 1/1/1 3//3 2/1/2", (0, 2, 1)),
     ],
 )
-def test_references_of_obj(tmp_path, faces, given):
+def test_references_of_obj(tmp_path, faces, vertices):
     path = tmp_path / "a.obj"
     path.write_text(rows("v", CORNERS) + "vt 0 0\n" + rows("vn", NORMALS) + faces)
     scene = load(path)
-    expected = [[(0, 0, 0) if vertex is None else UNIT[vertex] for vertex in given]]
+    expected = [[(0, 0, 0) if vertex is None else UNIT[vertex] for vertex in vertices]]
     np.testing.assert_allclose(of_corners(scene), expected)
     assert ("normals" in {warning.kind for warning in scene.warnings}) == ("9" in faces)
 

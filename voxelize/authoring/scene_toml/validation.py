@@ -111,17 +111,17 @@ _QUOTED = re.compile(r""""(?:[^"\\]|\\.)*"|'[^']*'""")
 
 
 def _check_shapes(checked: CheckedFile, node: Node, where: KeyPath) -> None:
-    given = [key for key in SHAPES if getattr(node, key) is not None]
-    if not given:
+    shapes = [key for key in SHAPES if getattr(node, key) is not None]
+    if not shapes:
         raise checked.error(where, "has no shape", f"add one of {', '.join(SHAPES)}")
-    if len(given) > 1:
+    if len(shapes) > 1:
         raise checked.error(
-            (*where, given[1]), f"is both {given[0]} and {given[1]}", "make two objects, or a group of both"
+            (*where, shapes[1]), f"is both {shapes[0]} and {shapes[1]}", "make two objects, or a group of both"
         )
-    inner = getattr(node, given[0])
+    inner = getattr(node, shapes[0])
     if isinstance(inner, list):
         for index, one in enumerate(inner):
-            _check_shapes(checked, one, (*where, given[0], index))
+            _check_shapes(checked, one, (*where, shapes[0], index))
 
 
 def _explained(path: Path, lines: dict[KeyPath, int], raw: dict[str, Any], message: str) -> AssetError:

@@ -104,8 +104,8 @@ def read_surface(document: Document, index: int, pose: Pose) -> Surface:
         rows, places = np.unique(corners, return_inverse=True)
         every, corners = every[rows], places.reshape(-1, 3).astype(np.int32)
         vectors = None if vectors is None else vectors[rows]
-    given = None if vectors is None else CornerNormals(vectors, corners)
-    return Surface(every, corners, tuple(spans), given)
+    corner_normals = None if vectors is None else CornerNormals(vectors, corners)
+    return Surface(every, corners, tuple(spans), corner_normals)
 
 
 def _normals(document: Document, attributes: Attributes, vertices: int) -> NDArray[np.floating] | None:

@@ -72,11 +72,15 @@ def load_obj(
     appearance = appearance_of_faces(text, statements, external_files, table, log)
     uv = None
     if any(placement is not None for placement in appearance.image_placements):
-        uv, given = texture_coordinates(text, statements)
+        uv, has_coordinates = texture_coordinates(text, statements)
         log.add(
             "texture",
             "textured faces without texture coordinates took the colour of the texture's corner",
-            int((~given & (appearance.rows >= 0) & _textured(appearance.rows, appearance.image_placements)).sum()),
+            int(
+                (
+                    ~has_coordinates & (appearance.rows >= 0) & _textured(appearance.rows, appearance.image_placements)
+                ).sum()
+            ),
         )
     corners, faces = triangulate_corners(statements.positions, statements.counts, statements.corners)
     visible = (appearance.materials[faces] != 0) | (appearance.rows[faces] >= 0)

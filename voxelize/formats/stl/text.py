@@ -36,8 +36,8 @@ def ascii_solids(path: Path, data: bytes) -> list[tuple[str, NDArray[np.float64]
     solids = _by_words(path, data) if found is None else found
     used: set[str] = set()
     named = []
-    for said, corners in solids:
-        stem = said.decode("utf-8", errors="replace").strip() or path.stem
+    for label, corners in solids:
+        stem = label.decode("utf-8", errors="replace").strip() or path.stem
         name, number = stem, 2
         while name in used:
             name, number = f"{stem} ({number})", number + 1

@@ -306,9 +306,9 @@ def test_instances_that_are_not_placed_are_shown_once(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("asked", "x"), [({"time": 1.0}, 1), ({"time": 1.0, "animation": "jump"}, 5), ({"animation": "1"}, 3)]
+    ("choice", "x"), [({"time": 1.0}, 1), ({"time": 1.0, "animation": "jump"}, 5), ({"animation": "1"}, 3)]
 )
-def test_an_animation_is_chosen_by_name_or_number(asked, x, tmp_path):
+def test_an_animation_is_chosen_by_name_or_number(choice, x, tmp_path):
     writer = GltfWriter()
     writer.show(mesh=writer.mesh(TRIANGLE))
     for name, start in (("walk", 0), ("jump", 3)):
@@ -317,6 +317,6 @@ def test_an_animation_is_chosen_by_name_or_number(asked, x, tmp_path):
         channel = {"sampler": 0, "target": {"node": 0, "path": "translation"}}
         writer.add("animations", {"name": name, "samplers": [sampler], "channels": [channel]})
     path = tmp_path / "a.glb"
-    assert positions(writer, path, **asked)[0].tolist() == [x, 0, 0]
+    assert positions(writer, path, **choice)[0].tolist() == [x, 0, 0]
     with pytest.raises(AssetError, match=r"no animation 'swim' in the file; it has 'walk', 'jump'"):
         load(path, animation="swim")

@@ -236,8 +236,8 @@ def test_variants(tmp_path):
     writer.json["extensions"] = {"KHR_materials_variants": {"variants": names}}
     writer.show(mesh=mesh)
     path = writer.save(tmp_path / "a.glb")
-    for asked, name in (((), "plain"), (("Beach",), "summer"), (("Snow",), "winter"), (("Moon",), "plain")):
-        assert [material.name for material in load(path, variants=asked).materials[1:]] == [name]
+    for variants, name in (((), "plain"), (("Beach",), "summer"), (("Snow",), "winter"), (("Moon",), "plain")):
+        assert [material.name for material in load(path, variants=variants).materials[1:]] == [name]
     with pytest.raises(AssetError, match=r"no variant 'Sea' in the file; it has 'Beach', 'Snow', 'Park', 'Moon'"):
         load(path, variants=("Sea",))
     with pytest.raises(AssetError, match=r"2 variants were requested, and one can be shown; request one"):

@@ -20,12 +20,12 @@ def test_layers_outside_the_folder_are_not_opened(tmp_path):
     inner.mkdir()
     (inner / "middle.usda").write_text('#usda 1.0\ndef "triangle" (references = @../shared.usda@</triangle>) {}\n')
     path = inner / "stage.usda"
-    for said, place in (
+    for text, place in (
         ("(subLayers = [@./middle.usda@])", "middle.usda: "),
         ("(subLayers = [@../shared.usda@])", ""),
         (f'def "a" (payload = @{tmp_path}/shared.usda@</triangle>) {{}}', ""),
     ):
-        path.write_text(f"#usda 1.0\n{said}\n")
+        path.write_text(f"#usda 1.0\n{text}\n")
         with pytest.raises(AssetError, match=rf"stage.usda: {place}layer '.*shared.usda' is outside .*--allow-outside"):
             load_usd(path)
         assert len(load_usd(path, allow_outside=True).objects) == 1

@@ -11,53 +11,40 @@ from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 from voxrt.sources.from_trimesh import is_trimesh
-from voxrt.sources.source import as_text, asset_name
+from voxrt.sources.source import as_text, open_source
 from voxrt.voxelize import AssetError, Scene
 from voxrt.voxelize.arguments import real, whole
 from voxrt.voxelize.assets import SUFFIXES
 
 if TYPE_CHECKING:
     from voxrt.options.build_options import BuildOptions
-    from voxrt.sources.source import Asset
+    from voxrt.sources.source import Asset, Source
 
 _MOST_FRAMES = 4096
 
 
-@dataclass(frozen=True, slots=True)
-class Take:
-    """What one frame is made from.
+@dataclass(frozen=True, eq=False, slots=True)
+class FrameSources:
+    """The opened assets of an animation."""
 
-    Attributes
-    ----------
-    asset, options
-        What is loaded, and how: the options have the time.
-    name
-        Of the frame; empty where all frames are of one asset.
-    """
-
-    asset: Asset
-    options: BuildOptions
-    name: str = ""
+    name: str  # what the files of the build are called
+    file_name: str | None  # that of the file or the folder that has all frames; None where there is none
+    sources: tuple[Source, ...]  # one per frame; their options have the time
+    names: tuple[str, ...]  # those of the frames; empty texts where all frames are of one asset
 
 
-def takes_of(
-    assets: Asset | Sequence[Asset], options: BuildOptions, times: Sequence[float] | None
-) -> tuple[str, tuple[Take, ...]]:
-    """Return the name of an animation, and what its frames are made from.
+def open_frames(assets: Asset | Sequence[Asset], options: BuildOptions, times: Sequence[float] | None) -> FrameSources:
+    """Open the assets of an animation.
 
-    Raises
-    ------
-    TypeError, ValueError
-        There is no frame, or times are given for several assets.
-    AssetError
-        A folder has no asset.
+    TypeError or ValueError if there is no frame, or times are given for several assets; AssetError if a folder has no
+    asset.
 
     Examples
     --------
     >>> from voxrt import BuildOptions
-    >>> name, takes = takes_of(["walk_1.glb", "walk_2.glb"], BuildOptions(), None)
-    >>> name, [take.name for take in takes]
-    ('walk', ['walk_1.glb', 'walk_2.glb'])
+    >>> frames = open_frames(["walk_1.glb", "walk_2.glb"], BuildOptions(), None)
+    >>> frames.name, frames.names
+    ('walk', ('walk_1.glb', 'walk_2.glb'))
     """
     if times is not None:
         if not _is_one(assets):
@@ -65,20 +52,23 @@ def takes_of(
         seconds = [real(f"times[{row}]", one) for row, one in enumerate(times)]
         if not 1 <= len(seconds) <= _MOST_FRAMES:
             raise ValueError(f"times must be 1 … {_MOST_FRAMES}, not {len(seconds)}")
-        asset = cast("Asset", assets)
-        return asset_name(asset), tuple(Take(asset, replace(options, time=one)) for one in seconds)
+        sources = tuple(open_source(cast("Asset", assets), replace(options, time=one)) for one in seconds)
+        return FrameSources(sources[0].name, sources[0].file_name, sources, ("",) * len(sources))
     several: Sequence[Asset]
+    name, file_name = "", None
     if isinstance(assets, str | os.PathLike):
-        name, several = asset_name(assets), frame_files(assets)
+        name, file_name = as_text(Path(assets).stem), as_text(Path(assets).name)
+        several = frame_files(assets)
     elif _is_one(assets):
         raise ValueError("one asset is an animation only at several times; give times, or several assets")
     else:
         several = cast("Sequence[Asset]", assets)
-        name = _common_name([asset_name(one) for one in several])
-    frames = tuple(Take(one, options, _frame_name(one)) for one in several)
-    if not 1 <= len(frames) <= _MOST_FRAMES:
-        raise ValueError(f"an animation has 1 … {_MOST_FRAMES} frames, not {len(frames)}")
-    return name, frames
+    sources = tuple(open_source(one, options) for one in several)
+    if not 1 <= len(sources) <= _MOST_FRAMES:
+        raise ValueError(f"an animation has 1 … {_MOST_FRAMES} frames, not {len(sources)}")
+    if file_name is None:
+        name = _common_name([source.name for source in sources])
+    return FrameSources(name, file_name, sources, tuple(source.file_name or source.name for source in sources))
 
 
 def frame_times(start: float, stop: float, count: int) -> tuple[float, ...]:
@@ -111,10 +101,7 @@ def frame_times(start: float, stop: float, count: int) -> tuple[float, ...]:
 def frame_files(folder: str | os.PathLike[str]) -> tuple[Path, ...]:
     """Find the assets of a folder, in the natural order of their names: ``walk_2`` comes before ``walk_10``.
 
-    Raises
-    ------
-    AssetError
-        It is no folder, or has no asset.
+    AssetError if it is no folder, or has no asset.
 
     Examples
     --------
@@ -148,10 +135,6 @@ def _is_one(assets: object) -> bool:
         and len(assets) == 2
         and not any(isinstance(part, one) or is_trimesh(part) for part in assets)
     )
-
-
-def _frame_name(asset: Asset) -> str:
-    return as_text(Path(asset).name) if isinstance(asset, str | os.PathLike) else asset_name(asset)
 
 
 def _common_name(names: list[str]) -> str:

@@ -1,0 +1,62 @@
+"""The host of a simulated board, by the protocol of docs/ecp5_boards.md, and what the board's screen should show."""
+
+from __future__ import annotations
+
+import struct
+import zlib
+
+from voxrt.board.designs.boot_table import BOARD_REGISTERS
+from voxrt.board.simulated.model import ModelDevice
+from voxrt.board.view import Lighting, View
+
+
+def picture(scene, camera, scale):
+    """What the screen shows: each pixel of the exact model as a square."""
+    model = ModelDevice()
+    model.write_memory(0, scene.words)
+    model.write_materials(scene.colours, scene.mirrors)
+    model.select_scene(0, scene.depth)
+    frame = model.frame(View(camera, (640 >> scale, 480 >> scale), scene.background, Lighting())).colour
+    return frame.repeat(1 << scale, 0).repeat(1 << scale, 1)
+
+
+class Host:
+    """The host's side of the protocol."""
+
+    def __init__(self, board):
+        self.board = board
+        self.sequence = 0
+
+    def request(self, operation, address, count, words=(), sequence=0):
+        head = bytes([0x56, operation, sequence, count]) + address.to_bytes(3, "little")
+        data = head + struct.pack(f"<{len(words)}I", *words)
+        return data + struct.pack("<I", zlib.crc32(data))
+
+    def ask(self, request, words):
+        """Send a request; return the status, the sequence number and the words of its answer."""
+        answer = self.board.transfer(request, 8 + 4 * words)
+        assert len(answer) == 8 + 4 * words, answer.hex()
+        assert answer[0] == 0x76
+        assert struct.unpack("<I", answer[-4:])[0] == zlib.crc32(answer[:-4])
+        assert answer[3] == words
+        return answer[1], answer[2], list(struct.unpack(f"<{words}I", answer[4:-4]))
+
+    def done(self, operation, address, count, words=()):
+        """Send a request that is done; return the words of its answer."""
+        self.sequence = (self.sequence + 1) % 256
+        request = self.request(operation, address, count, words, self.sequence)
+        status, sequence, answer = self.ask(request, count if operation == 1 else 0)
+        assert (status, sequence) == (0, self.sequence)
+        return answer
+
+    def read(self, address, count=1):
+        starts = range(0, count, 255)
+        return [word for start in starts for word in self.done(1, address + 4 * start, min(255, count - start))]
+
+    def write(self, address, words):
+        for start in range(0, len(words), 255):
+            part = [int(word) for word in words[start : start + 255]]
+            self.done(2, address + 4 * start, len(part), part)
+
+    def register(self, name):
+        return self.read(BOARD_REGISTERS[name])[0]

@@ -1,0 +1,10 @@
+from voxrt.view.cells import octants as octants
+from voxrt.view.cells import open_sides as open_sides
+from voxrt.view.errors import ViewerError as ViewerError
+from voxrt.view.pane import DrawnRay as DrawnRay
+from voxrt.view.pane import Pane as Pane
+from voxrt.view.pane import Preview as Preview
+from voxrt.view.pictures import picture as picture
+from voxrt.view.pictures import plot as plot
+from voxrt.view.pictures import turntable as turntable
+from voxrt.view.window import Window as Window

@@ -1,0 +1,134 @@
+"""The tasks of a plan that several workers run: make a tile, join tiles.
+
+A worker loads the source itself, unless it is a fork of the process that did so. It keeps the scene from task to task,
+and does one task at a time: the native stages use its threads.
+"""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from threading import Lock
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from voxrt import octree, voxelize
+from voxrt.errors import ToolError
+from voxrt.plans.stage_clock import StageClock
+from voxrt.plans.tile_making import block_voxelizer, finish_tile, tiles_key
+from voxrt.plans.tile_store import Tile, sparse_tallies, sum_tallies, tile_name
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from numpy.typing import NDArray
+
+    from voxrt.plans.tile_store import TileStore
+    from voxrt.sources.source import Source
+    from voxrt.voxelize import BlockVoxelizer, ColumnBlock, Grid
+
+
+@dataclass(frozen=True, slots=True)
+class TileJob:
+    """What all tiles of a build have in common.
+
+    A worker that finds another key than that of the store has another asset or program.
+    """
+
+    source: Source  # what each worker loads: a file by its absolute path
+    grid: Grid
+    store: TileStore  # where tiles go
+
+
+@dataclass(frozen=True, slots=True)
+class TileDone:
+    """A tile, or several that were joined, in the folder."""
+
+    name: str  # its name there
+    bytes: int  # the size of its words
+    tallies: NDArray[np.int64]  # as :class:`voxrt.plans.tile_store.Tile` has them
+
+
+_ONE_AT_A_TIME = Lock()
+_scene: dict[str, BlockVoxelizer] = {}  # by the key of the build: that of the last one
+_part: dict[tuple[str, tuple[int, ...]], BlockVoxelizer] = {}  # and that of its objects that were wanted last
+_inherited: dict[str, BlockVoxelizer] = {}  # by the key of the build: of the process that this one is a fork of
+
+
+@contextmanager
+def inherited_scene(key: str, voxelizer: BlockVoxelizer) -> Iterator[None]:
+    """Give the scene of a build to all forks of this process that are made in the block."""
+    _inherited[key] = voxelizer
+    try:
+        yield
+    finally:
+        del _inherited[key]
+
+
+def make_tile(job: TileJob, block: ColumnBlock, objects: tuple[int, ...]) -> TileDone:
+    """Voxelize a tile that these objects reach and build its octree, if nobody did yet.
+
+    ToolError if the scene is another one than that of the job.
+    """
+    with _ONE_AT_A_TIME:
+        tile = job.store.read(tile_name(block))
+        if tile is None:
+            tile = finish_tile(_voxelizer(job, objects), block, StageClock(None), job.store, _threads(job))
+        return TileDone(tile_name(block), tile.octree.words.nbytes, tile.tallies)
+
+
+def merge_tiles(job: TileJob, name: str, parts: Sequence[TileDone]) -> TileDone:
+    """Join finished tiles to one, if nobody did yet; ToolError if one is missing or damaged."""
+    with _ONE_AT_A_TIME:
+        tile = job.store.read(name)
+        if tile is None:
+            tile = _joined(job, [part.name for part in parts])
+            job.store.write(name, tile)
+        return TileDone(name, tile.octree.words.nbytes, tile.tallies)
+
+
+def _joined(job: TileJob, names: Sequence[str]) -> Tile:
+    whole = octree.Assembly(job.grid.depth)
+    rows = []
+    for name in names:
+        tile = job.store.read(name)
+        if tile is None:
+            raise ToolError(job.store.missing(name))
+        whole.add(tile.octree)
+        rows.append(tile.tallies)
+    tallies = np.concatenate(rows)
+    return Tile(whole.octree(), sparse_tallies(sum_tallies(tallies, int(tallies[:, 0].max(initial=0)) + 1)))
+
+
+def _voxelizer(job: TileJob, objects: tuple[int, ...]) -> BlockVoxelizer:
+    """Return the voxelizer of some objects."""
+    key, threads = job.store.key, _threads(job)
+    if (ready := _inherited.get(key)) is not None:
+        ready.use_threads(threads)
+        return ready
+    if (part := _part.get((key, objects))) is not None:
+        return part
+    _part.clear()
+    whole = _scene.get(key)
+    if whole is None:
+        _scene.clear()
+        options = replace(job.source.options, threads=threads)
+        scene = voxelize.assign_colours(job.source.load(), job.grid, colours=options.colours, geometry=options.geometry)
+        whole = block_voxelizer(scene, job.grid, options)
+        if tiles_key(whole) != key:
+            raise ToolError(
+                f"{job.source.label}: a worker has another file, or another version of voxrt, than this machine"
+            )
+        _scene[key] = whole
+    _part[key, objects] = part = whole.restricted(objects)
+    return part
+
+
+def _threads(job: TileJob) -> int:
+    """Return the threads that a task may use: those of the job, or those that its worker was given."""
+    if job.source.options.threads:
+        return job.source.options.threads
+    from distributed import get_worker  # noqa: PLC0415 - the extra `cluster`; workers have it
+
+    return max(1, get_worker().state.nthreads)
