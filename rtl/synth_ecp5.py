@@ -26,8 +26,9 @@ def main() -> int:
     # YoWASP sees the files of this folder, and not all of others.
     folder = Path("sources")
     folder.mkdir(exist_ok=True)
-    files = [Path(file["name"]) for file in design["files"] if file["file_type"] == "systemVerilogSource"]
-    sources = " ".join(shutil.copy(file, folder / file.name).as_posix() for file in files)
+    files = [file for file in design["files"] if file["file_type"] == "systemVerilogSource"]
+    copies = {file["name"]: shutil.copy(file["name"], folder / Path(file["name"]).name) for file in files}
+    sources = " ".join(copies[file["name"]].as_posix() for file in files if not file.get("is_include_file"))
     settings = " ".join(f"-G {name}={each['default']}" for name, each in design["parameters"].items())
     top = design["toplevel"]
     read = f"read_slang --threads 1 -D VOXRT_NARROW_MULTIPLIERS --top {top} {settings} {sources}"

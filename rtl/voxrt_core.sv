@@ -98,34 +98,19 @@ module voxrt_core
   output logic        m_axis_tuser,
   output logic        m_axis_tlast
 );
-  if (Lanes < 1 || Lanes > 255) begin : gen_bad_lanes
-    $error("voxrt_core: Lanes must be 1 to 255");
-  end
-  if (MaxDepth < 2 || MaxDepth > DepthLimit) begin : gen_bad_depth
-    $error("voxrt_core: MaxDepth must be 2 to 16 levels");
-  end
-  if (PositionBits < 6 || PositionBits > PositionLimit) begin : gen_bad_position
-    $error("voxrt_core: PositionBits must be 6 to 32 bits");
-  end
-  if (BlockBits < 5 || BlockBits > 24) begin : gen_bad_blocks
-    $error("voxrt_core: BlockBits must be 5 to 24 bits");
-  end
-  if (RayClocks != 1 && (RayClocks != 4 || Light || Mirrors || Lod)) begin : gen_bad_ray_clocks
+  if (Lanes < 1 || Lanes > 255) $error("voxrt_core: Lanes must be 1 to 255");
+  if (MaxDepth < 2 || MaxDepth > DepthLimit) $error("voxrt_core: MaxDepth must be 2 to 16 levels");
+  if (PositionBits < 6 || PositionBits > PositionLimit) $error("voxrt_core: PositionBits must be 6 to 32 bits");
+  if (BlockBits < 5 || BlockBits > 24) $error("voxrt_core: BlockBits must be 5 to 24 bits");
+  if (RayClocks != 1 && (RayClocks != 4 || Light || Mirrors || Lod))
     $error("voxrt_core: RayClocks must be 1, or 4 without Light, Mirrors and Lod");
-  end
-  if (MemoryForm > CachedForm) begin : gen_bad_form
-    $error("voxrt_core: MemoryForm must be 0, 1 or 2");
-  end
-  if (MemoryForm == CachedForm &&
-      (L1SetBits < 1 || L1SetBits >= BlockBits || L2SetBits < 1 || L2SetBits >= BlockBits)) begin : gen_bad_sets
+  if (MemoryForm > CachedForm) $error("voxrt_core: MemoryForm must be 0, 1 or 2");
+  if (MemoryForm == CachedForm && (L1SetBits < 1 || L1SetBits >= BlockBits || L2SetBits < 1 || L2SetBits >= BlockBits))
     $error("voxrt_core: L1SetBits and L2SetBits must be 1 bit or more, and less than BlockBits");
-  end
 
-  if (Lod && (Light || Mirrors)) begin : gen_bad_lod
-    $error("voxrt_core: Lod does not go with Light or Mirrors");
-  end
+  if (Lod && (Light || Mirrors)) $error("voxrt_core: Lod does not go with Light or Mirrors");
 
-  voxrt_registers_pkg::voxrt_registers__in_t  status;
+  voxrt_registers_pkg::voxrt_registers__in_t status;
   voxrt_registers_pkg::voxrt_registers__out_t control;
 
   voxrt_registers u_registers (
@@ -159,7 +144,7 @@ module voxrt_core
   assign rst_n = rst_ni && !control.control.soft_reset.value;
 
   // Frames. The ray tracer's errors are of a frame, and rise in it at any time; the registers' stick until cleared.
-  logic   busy, busy_q, start;
+  logic busy, busy_q, start;
   error_t error;
 
   assign start = (control.control.start.value || control.control.continuous.value) && !control.control.hold.value;
@@ -176,16 +161,16 @@ module voxrt_core
     assign frame.light[a]    = control.light[a].value.value;
   end
 
-  assign frame.memory_base     = {control.memory_base.address.value, 5'd0};
-  assign frame.lod_words       = control.lod.words.value;
-  assign frame.lod_scale       = control.lod.scale.value;
-  assign frame.width           = control.size.width.value;
-  assign frame.height          = control.size.height.value;
-  assign frame.depth           = control.depth.depth.value;
-  assign frame.root            = control.root.address.value;
-  assign frame.shading.flat    = control.shading.flat.value;
-  assign frame.shading.faces   = control.shading.faces.value;
-  assign frame.shading.light   = control.shading.light.value;
+  assign frame.memory_base = {control.memory_base.address.value, 5'd0};
+  assign frame.lod_words = control.lod.words.value;
+  assign frame.lod_scale = control.lod.scale.value;
+  assign frame.width = control.size.width.value;
+  assign frame.height = control.size.height.value;
+  assign frame.depth = control.depth.depth.value;
+  assign frame.root = control.root.address.value;
+  assign frame.shading.flat = control.shading.flat.value;
+  assign frame.shading.faces = control.shading.faces.value;
+  assign frame.shading.light = control.shading.light.value;
   assign frame.shading.ambient = control.shading.ambient.value;
   assign frame.shading.bounces = control.shading.bounces.value;
 
@@ -200,19 +185,19 @@ module voxrt_core
   assign material_write.material = control.materials.addr[9:2];
   assign material_write.entry    = control.materials.wr_data[24:0];
 
-  logic          pixel_valid, pixel_ready, unused_access_valid;
+  logic pixel_valid, pixel_ready, unused_access_valid;
   shaded_pixel_t pixel;
-  counters_t     counters;
+  counters_t counters;
 
-  axi_read_request_t  axi_request [BusPorts];
+  axi_read_request_t axi_request[BusPorts];
   axi_read_response_t axi_response[BusPorts];
 
-  assign m_axi0_arvalid  = axi_request[0].arvalid;
-  assign m_axi0_araddr   = axi_request[0].araddr;
-  assign m_axi0_rready   = axi_request[0].rready;
-  assign m_axi1_arvalid  = axi_request[1].arvalid;
-  assign m_axi1_araddr   = axi_request[1].araddr;
-  assign m_axi1_rready   = axi_request[1].rready;
+  assign m_axi0_arvalid = axi_request[0].arvalid;
+  assign m_axi0_araddr = axi_request[0].araddr;
+  assign m_axi0_rready = axi_request[0].rready;
+  assign m_axi1_arvalid = axi_request[1].arvalid;
+  assign m_axi1_araddr = axi_request[1].araddr;
+  assign m_axi1_rready = axi_request[1].rready;
   // 4 beats of 8 bytes, at rising addresses; bufferable and modifiable; data, secure, unprivileged.
   assign {m_axi0_arlen, m_axi0_arsize, m_axi0_arburst, m_axi0_arcache, m_axi0_arprot} = {8'd3, 3'd3, 2'd1, 4'd3, 3'd0};
   assign {m_axi1_arlen, m_axi1_arsize, m_axi1_arburst, m_axi1_arcache, m_axi1_arprot} = {8'd3, 3'd3, 2'd1, 4'd3, 3'd0};

@@ -61,8 +61,8 @@ package voxrt_pkg;
 
   // The same where each reflection moves the origin by less than the world's side.
   function automatic int reflected_distance_bits(int max_depth, int position_bits);
-    return $clog2(64'd2 ** (position_bits - 1) +
-                  (64'd2 ** BounceBits + 1) * 64'd2 ** (max_depth + FractionBits) + 1) + 1;
+    return $clog2(64'd2 ** (position_bits - 1) + (64'd2 ** BounceBits + 1) * 64'd2 ** (max_depth + FractionBits) + 1) +
+        1;
   endfunction
 
   // T as lanes compare it: modulo more than twice the time between any two planes of the world that a ray crosses in
@@ -76,23 +76,59 @@ package voxrt_pkg;
     return larger(max_depth + FractionBits + 1, DirectionBits) + 1;
   endfunction
 
-  // Memory words as the lanes read them: bit PayloadBits set = leaf of material [7:0], error in [8]; clear = block, and
-  // with Lod the mean material of what is below in the eight bits under that one.
+  typedef logic [7:0] material_t;
+
+  // Words of an octree, of 32 bits. The report dialect has {24'hFFFFFF, material} for a leaf, of which bit 31 decides,
+  // and for a pointer the address of the block's first word, 1 + 8 * block. The dialect lod has {24'hFFFFFF, material}
+  // and {block, mean material}.
+  function automatic logic is_leaf(logic [31:0] word, logic lod_words);
+    return lod_words ? word[31:8] == '1 : word[31];
+  endfunction
+
+  function automatic material_t material_of(logic [31:0] word);
+    return word[7:0];
+  endfunction
+
+  // The address of the block's first word.
+  function automatic logic [30:0] pointer_of(logic [31:0] word, logic lod_words);
+    return lod_words ? {4'd0, word[31:8], 3'd1} : word[30:0];
+  endfunction
+
+  function automatic logic [31:0] leaf_word(material_t material);
+    return {24'hFF_FFFF, material};
+  endfunction
+
+  function automatic logic [31:0] pointer_word(logic [23:0] block, material_t mean, logic lod_words);
+    return lod_words ? {block, mean} : {5'd0, block, 3'd1};
+  endfunction
+
+  // A pointer that was refused reads as this word.
+  localparam logic [31:0] RefusedWord = 32'h7FFF_FFFF;
+
+  // Words as the lanes read them have a bit more than payload_bits. The highest bit tells a leaf, whose low bits are a
+  // leaf_t. Of a pointer the low bits are the block, and with Lod the eight below the highest bit the mean material.
+  typedef struct packed {
+    logic      error;     // The pointer was refused, or the word did not come.
+    material_t material;  // 0 with an error.
+  } leaf_t;
+
+  localparam leaf_t ErrorLeaf = '{error: 1'b1, material: '0};
+
   function automatic int payload_bits(int block_bits, bit lod);
-    return larger(block_bits, 9) + (lod ? 8 : 0);
+    return larger(block_bits, $bits(leaf_t)) + (lod ? $bits(material_t) : 0);
   endfunction
 
   // Forms of the octree memory: the parameter MemoryForm.
   localparam int unsigned PrivateForm = 0;  // A copy per two lanes.
-  localparam int unsigned BankedForm = 1;   // One memory in banks.
-  localparam int unsigned CachedForm = 2;   // An external memory behind caches.
+  localparam int unsigned BankedForm = 1;  // One memory in banks.
+  localparam int unsigned CachedForm = 2;  // An external memory behind caches.
 
-  // From an address of the octree memory to its word.
+  // Clocks from an address of the octree memory to its word.
   function automatic int memory_clocks(int form);
     return form == int'(PrivateForm) ? 2 : 5;
   endfunction
 
-  // From an address of the memory port to its word: a register more, so that the port may be far away.
+  // Clocks from an address of the memory port to its word: one more, for a register, so that the port may be far away.
   function automatic int access_clocks(int form);
     return 1 + memory_clocks(form);
   endfunction
@@ -119,8 +155,6 @@ package voxrt_pkg;
   localparam int unsigned ShadowPointLimit = DepthLimit + ShadowFractionBits + 2;
   localparam int unsigned RowLimit = 6;  // Bits of the number of a row of weights.
   localparam int unsigned ReachLimit = DistanceLimit - FractionBits;
-
-  typedef logic [7:0] material_t;
 
   // The axis of a plane; FaceNone where none was crossed. The order of the codes is the order of planes that are
   // crossed at the same time.
@@ -171,7 +205,7 @@ package voxrt_pkg;
 
   // A frame, as the registers describe it. Camera and light: grid frame, signed, 1/16 voxel; look, right, up: signed.
   typedef struct packed {
-    logic [31:0]                memory_base;  // Of the external memory; voxrt_line_reader.
+    logic [31:0]                memory_base;  // Byte address in the external memory: voxrt_line_reader.
     logic [2:0][31:0]           position;
     logic [2:0][CameraBits-1:0] look;
     logic [2:0][CameraBits-1:0] right;
@@ -179,16 +213,16 @@ package voxrt_pkg;
     logic [SizeBits-1:0]        width;
     logic [SizeBits-1:0]        height;
     logic [4:0]                 depth;
-    logic [31:0]                root;      // Word address.
+    logic [31:0]                root;         // Word address.
     shading_t                   shading;
     logic [2:0][31:0]           light;
-    logic                       lod_words;  // The octree memory is in the dialect lod.
-    logic [LodScaleBits-1:0]    lod_scale;  // 0: rays stop at leaves alone.
+    logic                       lod_words;    // The octree memory is in the dialect lod.
+    logic [LodScaleBits-1:0]    lod_scale;    // 0: rays stop at leaves alone.
   } frame_t;
 
   // The world of a frame; held during it.
   typedef struct packed {
-    logic [2:0][DistanceLimit-1:0] origin;           // Of the camera's rays, signed.
+    logic [2:0][DistanceLimit-1:0] origin;           // Origin of the camera's rays, signed.
     logic [2:0][DistanceLimit-1:0] mirrored_origin;  // 16 * side - origin, signed.
     logic [4:0]                    depth;
     logic [DepthLimit:0]           side;             // Voxels, one-hot.
@@ -205,7 +239,7 @@ package voxrt_pkg;
     logic [SizeBits-1:0]        height;
   } raster_t;
 
-  // Where the light is among the planes of each axis, in the grid's frame ([0]) and mirrored ([1]).
+  // The place of the light among the planes of each axis, in the grid's frame ([0]) and mirrored ([1]).
   typedef struct packed {
     logic [1:0][2:0][DepthLimit:0] occluder;  // A plane of lower number is between a point and the light.
     logic [1:0][2:0][DepthLimit:0] backface;  // A face in a plane of lower number is turned away from the light.
@@ -216,17 +250,17 @@ package voxrt_pkg;
   // A ray that has entered the world, in the mirrored frame. Its weights travel apart.
   typedef struct packed {
     logic                          resolved;    // The result is known: nothing to trace.
-    pixel_t                        pixel;       // The result of a camera ray that is resolved ...
-    logic                          lit;         // ... and of a shadow ray.
+    pixel_t                        pixel;       // What a resolved ray of the camera shows.
+    logic                          lit;         // Whether a resolved shadow ray reaches the light.
     logic                          shadow;
-    logic [TagBits-1:0]            tag;         // Of a shadow ray: the entry of its pixel.
+    logic [TagBits-1:0]            tag;         // The entry of a shadow ray's pixel.
     logic [2:0]                    mirrored;    // Axes.
     logic [2:0]                    dead;        // Axes on which the ray does not move.
-    logic [2:0]                    octant;      // Of the root: the first one.
+    logic [2:0]                    octant;      // The first octant of the root.
     logic [KeyLimit-1:0]           entry_time;
     face_e                         entry_face;
     logic [2:0][DistanceLimit-1:0] origin;      // Signed; 1/32 voxel for shadow rays.
-    logic [ReachLimit-1:0]         reach;       // As voxrt_lod has it.
+    logic [ReachLimit-1:0]         reach;       // See voxrt_lod.
   } ray_t;
 
   // The weights of a ray go to its lane before it does, into a row that is free.
@@ -267,31 +301,31 @@ package voxrt_pkg;
 
   // A ray at stage 9 of a lane.
   typedef struct packed {
-    logic                       done;       // It has hit, left the world, or met an error ...
-    logic                       continues;  // ... or not. Both are low where no ray is.
-    material_t                  material;   // Of the word read; 0 without a hit.
-    face_e                      key_face;   // Of the plane crossed last.
+    logic                       done;       // It has hit, left the world, or met an error.
+    logic                       continues;  // It goes on. Neither is high where no ray is.
+    material_t                  material;   // The material of the word read; 0 without a hit.
+    face_e                      key_face;   // The face of the plane crossed last.
     logic [2:0]                 mirrored;
-    logic [2:0][DepthLimit-1:0] corner;     // Of the cell read.
+    logic [2:0][DepthLimit-1:0] corner;     // The corner of the cell read.
     logic [2:0]                 set;        // Axes on which the next corner has the bit of the next size.
   } step_t;
 
   // What the slot scheduler decides at stage 9 of a lane.
   typedef struct packed {
-    logic                       issues;    // The ray that waits gets the slot.
-    logic                       bypasses;  // The ray that waits is resolved: it needs no slot.
-    logic                       reflects;  // The ray of the slot starts again at the root.
-    logic                       keeps;     // The slot keeps its ray.
-    logic signed [DepthLimit+1:0] shift;   // Of a reflected ray's origin: side - 2 * plane, voxels.
-    logic [2:0]                 mirrored;  // Of the slot's ray from now on.
-    logic [2:0]                 set;       // As in step_t, from now on.
+    logic                         issues;    // The ray that waits gets the slot.
+    logic                         bypasses;  // The ray that waits is resolved: it needs no slot.
+    logic                         reflects;  // The ray of the slot starts again at the root.
+    logic                         keeps;     // The slot keeps its ray.
+    logic signed [DepthLimit+1:0] shift;     // How far a reflected ray's origin moves: side - 2 * plane, voxels.
+    logic [2:0]                   mirrored;  // The axes of the slot's ray from now on.
+    logic [2:0]                   set;       // See step_t; from now on.
   } decision_t;
 
   // What rays are, in the stages of a lane that ask.
   typedef struct packed {
     logic      waits0;     // It has hit, and waits for voxrt_hit_point.
     logic      waits2;
-    material_t material2;  // That it has hit.
+    material_t material2;  // What it has hit.
     logic      shadow1;
     logic      shadow2;
     logic      shadow3;
@@ -302,7 +336,7 @@ package voxrt_pkg;
     logic               complete;  // Nothing more comes; the pixel is stored now or was before.
     logic               store;
     logic [TagBits-1:0] tag;
-    logic               lit;       // With complete.
+    logic               lit;       // Valid with complete.
   } result_t;
 
   // What a pixel's colour is made of. In the reorder buffer, a payload is below it.
@@ -315,7 +349,7 @@ package voxrt_pkg;
   // Sums of colours, and of how many.
   localparam int unsigned ColourSumBits = 8 + BounceBits;
   typedef struct packed {
-    logic [2:0][ColourSumBits-1:0] sum;    // Red is 0.
+    logic [2:0][ColourSumBits-1:0] total;  // Red is 0.
     logic [BounceBits:0]           count;
   } mirrors_t;
 
@@ -345,9 +379,9 @@ package voxrt_pkg;
   typedef struct packed {
     colour_t colour;
     pixel_t  pixel;
-    logic    first;     // Of the frame.
+    logic    first;     // The first pixel of the frame.
     logic    line_end;
-    logic    last;      // Of the frame.
+    logic    last;      // The last pixel of the frame.
   } shaded_pixel_t;
 
   // Why a pixel may be wrong.
@@ -369,17 +403,16 @@ package voxrt_pkg;
     logic [31:0] word_requests;  // Lanes have asked for a word, which they did not always get.
     logic [31:0] line_requests;  // Caches of lanes have asked for a line.
     logic [31:0] lines_read;     // Lines of 32 bytes, from the external memory.
-    logic [31:0] cycles;      // From the start to the last pixel accepted.
-    logic [31:0] rays;        // Pixels accepted.
+    logic [31:0] cycles;         // Clocks from the start to the last pixel accepted.
+    logic [31:0] rays;           // Pixels accepted.
     logic [31:0] words_read;
-    logic [31:0] hits;        // Pixels accepted that show a material.
-    logic [31:0] stalls;      // Clocks in which a pixel waited to be accepted.
+    logic [31:0] hits;           // Pixels accepted that show a material.
+    logic [31:0] stalls;         // Clocks in which a pixel waited to be accepted.
   } counters_t;
 
   // The detail of a pixel between lane and shader: {shade, payload}.
   function automatic int detail_bits(int max_depth, bit light, bit mirrors);
-    return $bits(shade_e) +
-        larger(light ? 3 + 3 * (max_depth + FractionBits) : 1, mirrors ? $bits(mirrors_t) : 1);
+    return $bits(shade_e) + larger(light ? 3 + 3 * (max_depth + FractionBits) : 1, mirrors ? $bits(mirrors_t) : 1);
   endfunction
 
   // A pixel between lane and shader: its detail and a pixel_t below it; or the pixel_t alone.
@@ -426,10 +459,10 @@ package voxrt_pkg;
 
   // A pixel's place in a strip, in the order of voxrt_strip_place.
   typedef struct packed {
-    logic                  last_line;     // Of the strip.
+    logic                  last_line;     // The last line of the strip.
     logic                  last_of_half;  // The last column of its half of the picture.
     logic                  last_column;   // The last one of the strip, or of the line.
-    logic                  last_strip;    // Of the frame.
+    logic                  last_strip;    // The last strip of the frame.
     logic                  leftwards;     // The next column of the half is the one to the left.
     logic [StripLimit-1:0] address;
   } strip_place_t;

@@ -28,33 +28,33 @@ module voxrt_rtu
   parameter bit          Lod          = 1'b0,
   parameter string       OctreeFile   = ""
 ) (
-  input  logic            clk_i,
-  input  logic            rst_ni,
+  input  logic                      clk_i,
+  input  logic                      rst_ni,
   // Frame.
-  input  logic            start_i,
-  output logic            busy_o,
-  input  frame_t          frame_i,
+  input  logic                      start_i,
+  output logic                      busy_o,
+  input  frame_t                    frame_i,
   // Octree memory, see voxrt_octree_memory.
-  input  logic            access_i,
-  input  logic            access_write_i,
-  input  logic [31:0]     access_address_i,
-  input  logic [31:0]     access_word_i,
-  output logic            access_valid_o,
-  output logic [31:0]     access_word_o,
+  input  logic                      access_i,
+  input  logic                      access_write_i,
+  input  logic               [31:0] access_address_i,
+  input  logic               [31:0] access_word_i,
+  output logic                      access_valid_o,
+  output logic               [31:0] access_word_o,
   // External memory, see voxrt_cached_memory.
-  input  logic               bus_rst_ni,
-  input  logic               flush_i,
-  output axi_read_request_t  axi_o [BusPorts],
-  input  axi_read_response_t axi_i [BusPorts],
+  input  logic                      bus_rst_ni,
+  input  logic                      flush_i,
+  output axi_read_request_t         axi_o           [BusPorts],
+  input  axi_read_response_t        axi_i           [BusPorts],
   // Material table, see voxrt_shader and voxrt_reflect.
-  input  material_write_t material_write_i,
+  input  material_write_t           material_write_i,
   // Pixels.
-  output logic            pixel_valid_o,
-  input  logic            pixel_ready_i,
-  output shaded_pixel_t   pixel_o,
-  // Of this frame, or of the last one when busy_o is low. Errors stick until the next frame.
-  output error_t          error_o,
-  output counters_t       counters_o
+  output logic                      pixel_valid_o,
+  input  logic                      pixel_ready_i,
+  output shaded_pixel_t             pixel_o,
+  // Counts and errors of this frame, or of the last one when busy_o is low. Errors stick until the next frame.
+  output error_t                    error_o,
+  output counters_t                 counters_o
 );
   localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
   localparam int unsigned AddressBits = BlockBits + 3;
@@ -67,7 +67,7 @@ module voxrt_rtu
   localparam int unsigned RayDepth = Light ? 16 : 2 ** RowBits;
 
   // Frame.
-  logic   start, busy_q, root_valid;  // root_valid: for one clock, when the root is there.
+  logic start, busy_q, root_valid;  // root_valid: for one clock, when the root is there.
   frame_t frame;
   world_t world;
 
@@ -96,16 +96,16 @@ module voxrt_rtu
   );
 
   // Octree memory. Lane 0's read port finds the root before the frame's rays start.
-  logic [      Lanes-1:0] lane_read, memory_read, word_valid;
+  logic [Lanes-1:0] lane_read, memory_read, word_valid;
   logic [AddressBits-1:0] lane_address[Lanes];
-  logic [  AddressBits:0] memory_address[Lanes], root_address;
-  logic                   memory_ready;
-  memory_events_t         memory_events;
-  logic [  PayloadBits:0] word[Lanes], first_word, root;
-  logic                   root_read;
+  logic [AddressBits:0] memory_address[Lanes], root_address;
+  logic memory_ready;
+  memory_events_t memory_events;
+  logic [PayloadBits:0] word[Lanes], first_word, root;
+  logic root_read;
 
   always_comb begin
-    memory_read    = lane_read;
+    memory_read = lane_read;
     for (int unsigned i = 0; i < Lanes; i++) memory_address[i] = {1'b0, lane_address[i]};
     if (root_read) begin
       memory_read[0]    = 1'b1;
@@ -166,8 +166,8 @@ module voxrt_rtu
   );
 
   // Rays.
-  raster_t                    raster;
-  logic                       corner;
+  raster_t raster;
+  logic corner;
   logic [2:0][ScanBits-1:0] line_step;
 
   voxrt_scan u_scan (
@@ -184,22 +184,25 @@ module voxrt_rtu
   );
 
   assign raster = '{
-      start: root_valid,
-      corner: corner,
-      line_step: line_step,
-      right: frame.right,
-      width: frame.width,
-      height: frame.height
-  };
+          start: root_valid,
+          corner: corner,
+          line_step: line_step,
+          right: frame.right,
+          width: frame.width,
+          height: frame.height
+      };
 
-  logic          [Lanes-1:0] credit, issue, ray_lane, shadow_lane;
-  logic                      ray_valid, overflow, shadow_valid;
-  ray_t                      ray;
-  weights_t                  ray_weights;
-  shadow_ray_t               shadow_ray;
+  logic [Lanes-1:0] credit, issue, ray_lane, shadow_lane;
+  logic ray_valid, overflow, shadow_valid;
+  ray_t ray;
+  weights_t ray_weights;
+  shadow_ray_t shadow_ray;
 
   // With Light or Mirrors the lanes go into a root that is a leaf: its faces are lit and reflect too.
   localparam bit ResolvesRoot = !Light && !Mirrors;
+  leaf_t root_leaf;
+
+  assign root_leaf = root[$bits(leaf_t)-1:0];
 
   voxrt_rays #(
     .Lanes       (Lanes),
@@ -215,7 +218,7 @@ module voxrt_rtu
     .raster_i       (raster),
     .world_i        (world),
     .root_leaf_i    (ResolvesRoot && root[PayloadBits]),
-    .root_material_i(!ResolvesRoot || root[8] ? '0 : root[7:0]),
+    .root_material_i(!ResolvesRoot || root_leaf.error ? '0 : root_leaf.material),
     .lod_scale_i    (frame.lod_scale),
     .credit_i       (credit),
     .issue_o        (issue),
@@ -254,11 +257,11 @@ module voxrt_rtu
     shading_t             shading;
   } frame_values_t;
 
-  logic          [Lanes-1:0] door_start;
-  frame_values_t             door_frame  [Lanes];
-  logic          [Lanes-1:0] door_lane   [Lanes];  // Whose ray it is; 0: none.
-  ray_t                      door_ray    [Lanes];
-  weights_t                  door_weights[Lanes];
+  logic [Lanes-1:0] door_start;
+  frame_values_t door_frame[Lanes];
+  logic [Lanes-1:0] door_lane[Lanes];  // Whose ray it is; 0: none.
+  ray_t door_ray[Lanes];
+  weights_t door_weights[Lanes];
 
   assign door_start[0]   = root_valid;
   assign door_frame[0]   = '{world: world, root: root, shading: frame.shading};
@@ -282,12 +285,12 @@ module voxrt_rtu
   assign unused_door_start = door_start[Lanes-1];
 
   // Lanes.
-  light_planes_t               light_planes;
-  logic          [  Lanes-1:0] lane_pixel_valid, lane_pixel_ready, lane_pixel_lit;
-  logic          [  Lanes-1:0] hit_point_valid, hit_point_ready, shadow_issued, bad_pointer, step_limit;
-  logic          [  Lanes-1:0] hit_point_claim;
-  logic          [  Width-1:0] lane_pixel[Lanes];
-  hit_point_t                  hit_point [Lanes];
+  light_planes_t light_planes;
+  logic [Lanes-1:0] lane_pixel_valid, lane_pixel_ready, lane_pixel_lit;
+  logic [Lanes-1:0] hit_point_valid, hit_point_ready, shadow_issued, bad_pointer, step_limit;
+  logic [Lanes-1:0] hit_point_claim;
+  logic [Width-1:0] lane_pixel[Lanes];
+  hit_point_t hit_point[Lanes];
 
   for (genvar i = 0; i < Lanes; i++) begin : gen_lane
     voxrt_buffered_lane #(
@@ -377,15 +380,15 @@ module voxrt_rtu
   ) u_pixels (
     .clk_i,
     .rst_ni,
-    .raster_i     (raster),
-    .side_i       (world.side[MaxDepth:0]),
-    .light_i      (frame.light),
-    .shading_i    (frame.shading),
+    .raster_i (raster),
+    .side_i   (world.side[MaxDepth:0]),
+    .light_i  (frame.light),
+    .shading_i(frame.shading),
     .material_write_i,
-    .valid_i      (lane_pixel_valid),
-    .ready_o      (lane_pixel_ready),
-    .lit_i        (lane_pixel_lit),
-    .pixel_i      (lane_pixel),
+    .valid_i  (lane_pixel_valid),
+    .ready_o  (lane_pixel_ready),
+    .lit_i    (lane_pixel_lit),
+    .pixel_i  (lane_pixel),
     .pixel_valid_o,
     .pixel_ready_i,
     .pixel_o
@@ -403,7 +406,7 @@ module voxrt_rtu
     .hit_i               (pixel_o.pixel.material != '0),
     .word_read_i         (word_valid),
     .direction_overflow_i(ray_valid && overflow),
-    .bad_pointer_i       (bad_pointer != '0 || (root_valid && root[PayloadBits] && root[8])),
+    .bad_pointer_i       (bad_pointer != '0 || (root_valid && root[PayloadBits] && root_leaf.error)),
     .step_limit_i        (step_limit != '0),
     .memory_events_i     (memory_events),
     .error_o,

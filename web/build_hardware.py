@@ -21,7 +21,7 @@ from pathlib import Path
 from build_voxrt import link_headers
 from compiler import BUILD, COMPILED, ROOT, Unit, link, run, zig
 
-from voxrt.rtl.configurations import RTL, Configuration, read_configurations
+from voxrt.rtl.configurations import HEADER, RTL, Configuration, list_sources, read_configurations
 
 TOP = "voxrt_rtu"
 TEMPLATE = ROOT / "sim" / "src" / "rtl" / "configuration.cpp.in"
@@ -73,8 +73,8 @@ def verilate(root: Path, configuration: Configuration, generated: Path) -> None:
     parameters = {name: values[name] for name in declared if name in values}
     parameters["BlockBits"] = configuration.simulation_block_bits
     sources = [
-        *sorted(RTL.glob("*.sv")),
-        *sorted((RTL / "generated").glob("*.sv")),
+        HEADER,
+        *list_sources(),
         RTL / "lint.vlt",
         TEMPLATE,
         Path(__file__),
@@ -91,8 +91,7 @@ def verilate(root: Path, configuration: Configuration, generated: Path) -> None:
         *("--cc", "-O3", "--x-assign", "fast", "--x-initial", "fast", "--no-assert", "--output-split", "0"),
         *("--top-module", TOP, "--prefix", f"V{generated.name}", "--Mdir", str(generated)),
         *(f"-G{name}={value}" for name, value in parameters.items()),
-        *("-y", str(RTL), "-y", str(RTL / "generated"), str(RTL / "lint.vlt"), str(RTL / "voxrt_pkg.sv")),
-        *(str(RTL / "generated" / "voxrt_registers_pkg.sv"), str(RTL / f"{TOP}.sv")),
+        *(str(RTL / "lint.vlt"), "-F", str(RTL / "voxrt.f")),
         VERILATOR_ROOT=str(root),
     )
     # As one source: most of the time to compile is that of the same headers.

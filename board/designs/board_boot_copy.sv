@@ -17,9 +17,7 @@ module board_boot_copy
   output logic [255:0] data_o,
   input  logic         done_i
 );
-  if (BlockBits < 5 || BlockBits > 19) begin : gen_bad_block_bits
-    $error("board_boot_copy: BlockBits must be 5 to 19 bits");
-  end
+  if (BlockBits < 5 || BlockBits > 19) $error("board_boot_copy: BlockBits must be 5 to 19 bits");
 
   localparam int unsigned PayloadBits = payload_bits(BlockBits, 1'b0);
 
@@ -38,12 +36,12 @@ module board_boot_copy
     initial $readmemh(File, rows_q);
   end
 
-  state_e               state_q;
+  state_e state_q;
   logic [BlockBits-1:0] block_q;
-  logic [          3:0] step_q;
+  logic [3:0] step_q;
   logic [BlockBits+2:0] place, place_q;
-  logic [         31:0] word;
-  logic [        255:0] data_q;
+  logic [31:0] word;
+  logic [255:0] data_q;
 
   // Each row is written back as it was read: without a write port it would be a ROM to yosys, which lays ROMs out in a way
   // that voxrt.board.designs.base_design does not know. The reset lasts until the first row has been read.

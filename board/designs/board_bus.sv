@@ -1,55 +1,53 @@
-// Two masters, one access at a time, to all that the address map has: the core's registers, its octree memory, the
-// board's registers, the table.
+// Joins two masters, one access at a time, to all that the address map has: the core's registers, its octree memory,
+// the board's registers, the table.
 //
 // A master holds valid_i and its access until done_o, which is set for one clock. Master 0 goes first.
 module board_bus
   import board_pkg::*;
 #(
-  parameter int unsigned MemoryClocks = 3  // From an address of the octree memory to its word: 2 or more.
+  parameter int unsigned MemoryClocks = 3  // Clocks from an address of the octree memory to its word: 2 or more.
 ) (
-  input  logic                 clk_i,
-  input  logic                 rst_ni,
-  input  logic    [1:0]        valid_i,
-  input  access_t [1:0]        access_i,
-  output logic    [1:0]        done_o,
-  output logic    [31:0]       data_o,            // What was read, with done_o.
-  output logic                 refused_o,         // Nothing has this address, with done_o.
+  input  logic                    clk_i,
+  input  logic                    rst_ni,
+  input  logic    [          1:0] valid_i,
+  input  access_t [          1:0] access_i,
+  output logic    [          1:0] done_o,
+  output logic    [         31:0] data_o,            // What was read, with done_o.
+  output logic                    refused_o,         // Nothing has this address, with done_o.
   // The core's registers.
-  output logic                 m_axil_awvalid,
-  input  logic                 m_axil_awready,
-  output logic    [10:0]       m_axil_awaddr,
-  output logic                 m_axil_wvalid,
-  input  logic                 m_axil_wready,
-  output logic    [31:0]       m_axil_wdata,
-  input  logic                 m_axil_bvalid,
-  input  logic    [1:0]        m_axil_bresp,
-  output logic                 m_axil_arvalid,
-  input  logic                 m_axil_arready,
-  output logic    [10:0]       m_axil_araddr,
-  input  logic                 m_axil_rvalid,
-  input  logic    [31:0]       m_axil_rdata,
-  input  logic    [1:0]        m_axil_rresp,
+  output logic                    m_axil_awvalid,
+  input  logic                    m_axil_awready,
+  output logic    [         10:0] m_axil_awaddr,
+  output logic                    m_axil_wvalid,
+  input  logic                    m_axil_wready,
+  output logic    [         31:0] m_axil_wdata,
+  input  logic                    m_axil_bvalid,
+  input  logic    [          1:0] m_axil_bresp,
+  output logic                    m_axil_arvalid,
+  input  logic                    m_axil_arready,
+  output logic    [         10:0] m_axil_araddr,
+  input  logic                    m_axil_rvalid,
+  input  logic    [         31:0] m_axil_rdata,
+  input  logic    [          1:0] m_axil_rresp,
   // The octree memory.
-  output logic                 memory_en_o,
-  output logic                 memory_write_o,
-  output logic    [31:0]       memory_address_o,
-  output logic    [31:0]       memory_data_o,
-  input  logic    [31:0]       memory_data_i,
+  output logic                    memory_en_o,
+  output logic                    memory_write_o,
+  output logic    [         31:0] memory_address_o,
+  output logic    [         31:0] memory_data_o,
+  input  logic    [         31:0] memory_data_i,
   // The board's registers: what they read comes a clock later.
-  output logic                 register_en_o,
-  output logic                 register_write_o,
-  output logic    [3:0]        register_o,
-  output logic    [31:0]       register_data_o,
-  input  logic    [31:0]       register_data_i,
+  output logic                    register_en_o,
+  output logic                    register_write_o,
+  output logic    [          3:0] register_o,
+  output logic    [         31:0] register_data_o,
+  input  logic    [         31:0] register_data_i,
   // The table: what it reads comes two clocks later.
-  output logic                 table_write_o,
-  output logic [TableBits-1:0] table_word_o,
-  output logic    [31:0]       table_data_o,
-  input  logic    [31:0]       table_data_i
+  output logic                    table_write_o,
+  output logic    [TableBits-1:0] table_word_o,
+  output logic    [         31:0] table_data_o,
+  input  logic    [         31:0] table_data_i
 );
-  if (MemoryClocks < 2) begin : gen_bad_memory_clocks
-    $error("board_bus: MemoryClocks must be 2 clocks or more");
-  end
+  if (MemoryClocks < 2) $error("board_bus: MemoryClocks must be 2 clocks or more");
 
   typedef enum logic [2:0] {
     Idle,
@@ -67,13 +65,13 @@ module board_bus
     Nothing
   } target_e;
 
-  state_e  state_q;
+  state_e state_q;
   target_e target_q;
-  logic    master_q, refused_q;
-  logic    [ 1:0] asks;
+  logic master_q, refused_q;
+  logic [1:0] asks;
   access_t access, access_q;
-  logic    [ 2:0] wait_q;
-  logic    [31:0] data_q;
+  logic [2:0] wait_q;
+  logic [31:0] data_q;
 
   // A master lowers valid_i a clock after done_o.
   assign asks   = valid_i & ~done_o;

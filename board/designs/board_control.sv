@@ -10,35 +10,35 @@ module board_control
   // What the table holds from the beginning, for $readmemh.
   parameter string       TableFile  = ""
 ) (
-  input  logic                       clk_i,
-  input  logic                       rst_ni,
-  input  logic                       rx_i,
-  output logic                       tx_o,
-  input  logic    [2:0]              buttons_i,
-  output logic    [7:0]              leds_o,
+  input  logic                             clk_i,
+  input  logic                             rst_ni,
+  input  logic                             rx_i,
+  output logic                             tx_o,
+  input  logic       [          2:0]       buttons_i,
+  output logic       [          7:0]       leds_o,
   // Master 0 is the player, and between lists the frames; master 1 the serial line.
-  output logic    [1:0]              valid_o,
-  output access_t [1:0]              access_o,
-  input  logic    [1:0]              done_i,
-  input  logic    [1:0][31:0]        data_i,
-  input  logic    [1:0]              refused_i,
+  output logic       [          1:0]       valid_o,
+  output access_t    [          1:0]       access_o,
+  input  logic       [          1:0]       done_i,
+  input  logic       [          1:0][31:0] data_i,
+  input  logic       [          1:0]       refused_i,
   // The board's registers and the table, from the bus.
-  input  logic                       register_en_i,
-  input  logic                       register_write_i,
-  input  logic    [3:0]              register_i,
-  input  logic    [31:0]             register_data_i,
-  output logic    [31:0]             register_data_o,
-  input  logic                       table_write_i,
-  input  logic    [TableBits-1:0]    table_word_i,
-  input  logic    [31:0]             table_data_i,
-  output logic    [31:0]             table_data_o,
+  input  logic                             register_en_i,
+  input  logic                             register_write_i,
+  input  logic       [          3:0]       register_i,
+  input  logic       [         31:0]       register_data_i,
+  output logic       [         31:0]       register_data_o,
+  input  logic                             table_write_i,
+  input  logic       [TableBits-1:0]       table_word_i,
+  input  logic       [         31:0]       table_data_i,
+  output logic       [         31:0]       table_data_o,
   // Frames.
-  input  logic                       flush_i,       // A frame that starts empties the core's caches.
-  input  logic                       row_event_i,
-  input  row_event_t                 row_i,
-  output logic                       drain_o,
-  output logic                       new_frame_o,   // A frame starts; for one clock.
-  output logic    [1:0]              scale_o        // Of it.
+  input  logic                             flush_i,           // A frame that starts empties the core's caches.
+  input  logic                             row_event_i,
+  input  row_event_t                       row_i,
+  output logic                             drain_o,
+  output logic                             new_frame_o,       // A frame starts; for one clock.
+  output logic       [          1:0]       scale_o            // The scale of the new frame.
 );
   // Bit flush of the core's register control, which board_frames writes to start a frame.
   localparam int unsigned FlushBit = 4;
@@ -81,7 +81,7 @@ module board_control
   );
 
   // Serial line.
-  logic       rx_valid, rx_broken, tx_valid, tx_ready;
+  logic rx_valid, rx_broken, tx_valid, tx_ready;
   logic [7:0] rx_byte, tx_byte;
 
   board_uart #(
@@ -131,20 +131,20 @@ module board_control
     .register_i,
     .register_data_i,
     .register_data_o,
-    .play_o          (play),
-    .play_word_o     (play_word),
-    .play_camera_o   (play_camera),
-    .playing_i       (playing),
-    .valid_o         (frames_valid),
-    .access_o        (frames_access),
-    .done_i          (done_i[0] && !playing),
-    .data_i          (data_i[0]),
+    .play_o       (play),
+    .play_word_o  (play_word),
+    .play_camera_o(play_camera),
+    .playing_i    (playing),
+    .valid_o      (frames_valid),
+    .access_o     (frames_access),
+    .done_i       (done_i[0] && !playing),
+    .data_i       (data_i[0]),
     .row_event_i,
     .row_i,
     .drain_o,
     .new_frame_o,
     .scale_o,
-    .events_i        (events),
+    .events_i     (events),
     .buttons_i,
     .leds_o
   );

@@ -2,15 +2,15 @@
 module board_crc32 (
   input  logic        clk_i,
   input  logic        clear_i,
-  input  logic        valid_i,  // While busy_o is low.
+  input  logic        valid_i,  // Only while busy_o is low.
   input  logic [ 7:0] byte_i,
   output logic        busy_o,
-  output logic [31:0] crc_o,    // Of the bytes since clear_i.
+  output logic [31:0] crc_o,    // The CRC of the bytes since clear_i.
   output logic        right_o   // The last four bytes were the CRC of those before.
 );
   logic [31:0] crc_q;
-  logic [ 7:0] byte_q;
-  logic [ 3:0] left_q;
+  logic [7:0] byte_q;
+  logic [3:0] left_q;
 
   assign busy_o  = left_q != '0;
   assign crc_o   = ~crc_q;

@@ -1,5 +1,6 @@
-// A value from one clock to another, each time send_i is set. It must not be set again before three clocks of the
-// receiver have passed.
+// Hands a value from one clock to another, each time send_i is set. Use it for values of more than one bit, whose bits
+// board_synchronizer would give at different clocks. send_i must not be set again before three clocks of the receiver
+// have passed.
 module board_event #(
   parameter int unsigned Width = 8  // Bits: 1 or more.
 ) (
@@ -8,14 +9,12 @@ module board_event #(
   input  logic             send_i,
   input  logic [Width-1:0] value_i,
   input  logic             to_clk_i,
-  output logic             received_o,  // For one clock, value_o from then on.
+  output logic             received_o,   // For one clock, value_o from then on.
   output logic [Width-1:0] value_o
 );
-  if (Width < 1) begin : gen_bad_width
-    $error("board_event: Width must be 1 bit or more");
-  end
+  if (Width < 1) $error("board_event: Width must be 1 bit or more");
 
-  logic             toggle_q, toggle, last_q;
+  logic toggle_q, toggle, last_q;
   logic [Width-1:0] value_q;
 
   always_ff @(posedge from_clk_i) begin

@@ -5,34 +5,34 @@ module board_frame_reader
   import board_pkg::*;
 (
   // System clock.
-  input  logic         clk_i,
-  input  logic         rst_ni,
-  input  logic         visible_i,     // There is a frame. These three change only while reading_o is low.
-  input  logic         frame_i,
-  input  logic [  1:0] scale_i,
-  output logic         reading_o,
-  output logic         row_event_o,   // As board_line_buffer has them.
-  output row_event_t   row_o,
+  input  logic               clk_i,
+  input  logic               rst_ni,
+  input  logic               visible_i,     // There is a frame. These three change only while reading_o is low.
+  input  logic               frame_i,
+  input  logic       [  1:0] scale_i,
+  output logic               reading_o,
+  output logic               row_event_o,   // See board_line_buffer.
+  output row_event_t         row_o,
   // A port of the SDRAM's arbiter.
-  output logic         valid_o,
-  input  logic         ready_i,
-  output logic         urgent_o,
-  output logic [ 19:0] line_o,
-  input  logic         done_i,
-  input  logic [255:0] data_i,
+  output logic               valid_o,
+  input  logic               ready_i,
+  output logic               urgent_o,
+  output logic       [ 19:0] line_o,
+  input  logic               done_i,
+  input  logic       [255:0] data_i,
   // Pixel clock.
-  input  logic         pixel_clk_i,
-  input  logic         pixel_rst_ni,
-  input  logic         row_begin_i,   // A row begins in a few clocks; for one clock.
-  input  logic [  9:0] row_i,         // Which one.
-  input  logic [  9:0] column_i,
-  output logic [ 23:0] pixel_o        // Three clocks after column_i.
+  input  logic               pixel_clk_i,
+  input  logic               pixel_rst_ni,
+  input  logic               row_begin_i,   // A row begins in a few clocks; for one clock.
+  input  logic       [  9:0] row_i,         // The number of that row.
+  input  logic       [  9:0] column_i,
+  output logic       [ 23:0] pixel_o        // Three clocks after column_i.
 );
   localparam int unsigned LinesPerRow = 60;
   localparam int unsigned UrgentBit = 9;
 
   // The row that comes.
-  logic       row_event, busy_q, missed_q, reading_q, asks_q, first_q;
+  logic row_event, busy_q, missed_q, reading_q, asks_q, first_q;
   logic [9:0] row, target;
   logic [8:0] row_q, picture_row;
   logic [5:0] asked_q, come_q, lines;
@@ -63,10 +63,10 @@ module board_frame_reader
 
   // A line that has come, word by word.
   logic [255:0] data_q;
-  logic [  3:0] words_q;
-  logic         word_ready, word_last, pixel_valid, line_end;
-  logic [ 23:0] pixel;
-  logic [  9:0] column_q;
+  logic [3:0] words_q;
+  logic word_ready, word_last, pixel_valid, line_end;
+  logic [23:0] pixel;
+  logic [9:0] column_q;
 
   assign word_last = words_q == 4'd1 && come_q == lines;
 
@@ -139,8 +139,8 @@ module board_frame_reader
   logic [23:0] rows_q[2 * 1024];
   logic [10:0] read_place_q;
   logic [23:0] read_q;
-  logic [ 1:0] pixel_scale;
-  logic        pixel_visible, shows_q, shown_half_q;
+  logic [1:0] pixel_scale;
+  logic pixel_visible, shows_q, shown_half_q;
 
   always_ff @(posedge clk_i) if (pixel_valid && busy_q) rows_q[{row_q[0], column_q}] <= pixel;
 

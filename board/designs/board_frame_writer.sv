@@ -1,11 +1,11 @@
-// Writes the core's video stream (rtl/voxrt_pixel_packer.sv) into one of two frames in the SDRAM, as it comes: a row of
-// the picture has 64 lines of 32 bytes, of which 640 pixels take 60. What is beyond is dropped.
+// Writes the core's video stream (rtl/shading/voxrt_pixel_packer.sv) into one of two frames in the SDRAM, as it comes. A
+// row of the picture has 64 lines of 32 bytes, of which 640 pixels take 60. What is beyond is dropped.
 module board_frame_writer
   import board_pkg::*;
 (
   input  logic         clk_i,
   input  logic         rst_ni,
-  input  logic         frame_i,        // Which one, at the frame's first word.
+  input  logic         frame_i,        // The number of the frame, at its first word.
   input  logic         hold_i,         // No frame begins.
   input  logic         s_axis_tvalid,
   output logic         s_axis_tready,
@@ -19,11 +19,11 @@ module board_frame_writer
   output logic [ 15:0] mask_o,
   output logic [255:0] data_o
 );
-  logic         full_q, last_q, frame_q, beyond, accepts;
-  logic [  6:0] line_q;         // Of the row; 64 and more are beyond.
-  logic [  8:0] row_q;
-  logic [  2:0] word_q, word;
-  logic [ 15:0] mask_q;
+  logic full_q, last_q, frame_q, beyond, accepts;
+  logic [6:0] line_q;  // The line of the row; from 64 on it is beyond.
+  logic [8:0] row_q;
+  logic [2:0] word_q, word;
+  logic [15:0] mask_q;
   logic [255:0] data_q;
 
   assign s_axis_tready = !full_q && !(s_axis_tuser && hold_i);
@@ -31,11 +31,11 @@ module board_frame_writer
   assign word          = s_axis_tuser ? 3'd0 : word_q;
   assign beyond        = line_q[6] || row_q >= 9'(Rows);
 
-  assign valid_o = full_q && !beyond;
-  assign line_o  = {4'hF, frame_q, row_q, line_q[5:0]};
-  assign mask_o  = mask_q;
+  assign valid_o       = full_q && !beyond;
+  assign line_o        = {4'hF, frame_q, row_q, line_q[5:0]};
+  assign mask_o        = mask_q;
   // Ports that do not write bring zeros.
-  assign data_o  = full_q ? data_q : '0;
+  assign data_o        = full_q ? data_q : '0;
 
   always_ff @(posedge clk_i) begin
     if (accepts) begin

@@ -1,4 +1,4 @@
-// When frames start, and what is written before: the board's registers, buttons and LEDs.
+// Decides when frames start and what is written before: the board's registers, buttons and LEDs.
 //
 // At power-on it plays the boot list. At the beginning of each vertical blanking it waits until the core is idle, plays
 // the list that the host asked for and the camera's, and starts a frame. A core that is still busy near the end of
@@ -12,47 +12,43 @@ module board_frames
   parameter int unsigned LineBits   = 4,
   parameter bit          ButtonsLow = 1'b0
 ) (
-  input  logic                clk_i,
-  input  logic                rst_ni,
+  input  logic                          clk_i,
+  input  logic                          rst_ni,
   // The board's registers, from the bus.
-  input  logic                register_en_i,
-  input  logic                register_write_i,
-  input  logic [         3:0] register_i,
-  input  logic [        31:0] register_data_i,
-  output logic [        31:0] register_data_o,
+  input  logic                          register_en_i,
+  input  logic                          register_write_i,
+  input  logic          [          3:0] register_i,
+  input  logic          [         31:0] register_data_i,
+  output logic          [         31:0] register_data_o,
   // The player, and the bus while it is idle.
-  output logic                play_o,
-  output logic [TableBits-1:0] play_word_o,
-  output logic                play_camera_o,
-  input  logic                playing_i,
-  output logic                valid_o,
-  output access_t             access_o,
-  input  logic                done_i,
-  input  logic [        31:0] data_i,
+  output logic                          play_o,
+  output logic          [TableBits-1:0] play_word_o,
+  output logic                          play_camera_o,
+  input  logic                          playing_i,
+  output logic                          valid_o,
+  output access_t                       access_o,
+  input  logic                          done_i,
+  input  logic          [         31:0] data_i,
   // The line buffer.
-  input  logic                row_event_i,
-  input  row_event_t          row_i,
-  output logic                drain_o,          // No line is wanted until the next frame starts.
-  output logic                new_frame_o,      // A frame starts; for one clock.
-  output logic [         1:0] scale_o,
-  input  count_events_t       events_i,
+  input  logic                          row_event_i,
+  input  row_event_t                    row_i,
+  output logic                          drain_o,           // No line is wanted until the next frame starts.
+  output logic                          new_frame_o,       // A frame starts; for one clock.
+  output logic          [          1:0] scale_o,
+  input  count_events_t                 events_i,
   // Pause, reverse, step: any level, any clock.
-  input  logic [         2:0] buttons_i,
-  output logic [         7:0] leds_o
+  input  logic          [          2:0] buttons_i,
+  output logic          [          7:0] leds_o
 );
-  if (ClockHz < 1) begin : gen_bad_clock_hz
-    $error("board_frames: ClockHz must be 1 Hz or more");
-  end
-  if (LineBits < 4 || LineBits > 7) begin : gen_bad_lines
-    $error("board_frames: LineBits must be 4 to 7");
-  end
+  if (ClockHz < 1) $error("board_frames: ClockHz must be 1 Hz or more");
+  if (LineBits < 4 || LineBits > 7) $error("board_frames: LineBits must be 4 to 7");
 
   // The core's registers (rtl/registers.rdl).
   localparam logic [23:0] CoreControl = 24'h00000C;
   localparam logic [23:0] CoreStatus = 24'h000010;
   localparam logic [TableBits-1:0] Cameras = 12'h800;
 
-  // So many rows before the first visible one a late frame is given up: lists are short against one row.
+  // A late frame is given up so many rows before the first visible one. Lists are short against one row.
   localparam int unsigned LastStartRow = RowsTotal - 8;
 
   typedef enum logic [2:0] {
@@ -72,22 +68,22 @@ module board_frames
     logic [7:0] period;
     logic [1:0] scale;
     logic       steered;
-    logic       reverse;
+    logic       backward;
     logic       turn;
     logic       run;
   } control_t;
 
-  control_t             control_q;
-  logic [          6:0] camera_q;
-  logic [          7:0] shown_q;    // Frames of the camera.
-  logic                 pending_q;
+  control_t control_q;
+  logic [6:0] camera_q;
+  logic [7:0] shown_q;  // How many frames show the camera.
+  logic pending_q;
   logic [TableBits-1:0] list_q;
-  logic [         31:0] frames_q, underruns_q, late_q, requests_q, bad_requests_q, refused_q;
-  logic                 underrun_frame_q, underrun_led_q, late_led_q, bad_led_q;
+  logic [31:0] frames_q, underruns_q, late_q, requests_q, bad_requests_q, refused_q;
+  logic underrun_frame_q, underrun_led_q, late_led_q, bad_led_q;
 
   // Buttons, once per frame: they bounce for less.
   logic [2:0] buttons_q[3], pressed;
-  logic       blanking, too_late;
+  logic blanking, too_late;
 
   assign blanking = row_event_i && row_i.row == 10'(Rows);
   assign too_late = row_event_i && row_i.row == 10'(LastStartRow);
@@ -130,7 +126,7 @@ module board_frames
           late_q     <= late_q + 1'b1;
           late_led_q <= 1'b1;
         end
-        // Only when no access is under way.
+        // A frame starts only when no access is under way.
         if (late_led_q && done_i) state_q <= Wait;
       end
       List: begin
@@ -178,10 +174,10 @@ module board_frames
       if (shown_q + 9'd1 >= {1'b0, control_q.period}) shown_q <= '0;
     end
     if (steps || (turns && shown_q + 9'd1 >= {1'b0, control_q.period})) begin
-      camera_q <= control_q.reverse ? camera_q - 1'b1 : camera_q + 1'b1;
+      camera_q <= control_q.backward ? camera_q - 1'b1 : camera_q + 1'b1;
     end
     if (blanking && pressed[0]) control_q.turn <= !control_q.turn;
-    if (blanking && pressed[1]) control_q.reverse <= !control_q.reverse;
+    if (blanking && pressed[1]) control_q.backward <= !control_q.backward;
 
     if (writes) begin
       case (register_i)
@@ -190,7 +186,7 @@ module board_frames
               period: register_data_i[15:8],
               scale: register_data_i[5:4],
               steered: register_data_i[3],
-              reverse: register_data_i[2],
+              backward: register_data_i[2],
               turn: register_data_i[1],
               run: register_data_i[0]
           };
@@ -214,7 +210,7 @@ module board_frames
       4'd1:    register_data_o <= {14'd0, 2'(LineBits - 4), 16'h0100};
       4'd2: begin
         register_data_o <= {
-          16'd0, control_q.period, 2'd0, control_q.scale, control_q.steered, control_q.reverse, control_q.turn,
+          16'd0, control_q.period, 2'd0, control_q.scale, control_q.steered, control_q.backward, control_q.turn,
           control_q.run
         };
       end
@@ -261,7 +257,7 @@ module board_frames
   always_comb begin
     leds_o[0] = state_q != Boot && control_q.run;
     leds_o[1] = control_q.turn;
-    leds_o[2] = control_q.reverse;
+    leds_o[2] = control_q.backward;
     leds_o[3] = underrun_led_q;
     leds_o[4] = requests_q[0];
     leds_o[5] = bad_led_q;

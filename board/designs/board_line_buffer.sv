@@ -9,46 +9,44 @@ module board_line_buffer
   parameter int unsigned LineBits = 4  // 2**LineBits lines: 4 .. 7.
 ) (
   // System clock.
-  input  logic        clk_i,
-  input  logic        rst_ni,
-  input  logic        valid_i,
-  output logic        ready_o,
-  input  logic [23:0] pixel_i,
-  input  logic        line_end_i,
-  input  logic        drain_i,      // Pixels are dropped.
-  input  logic        new_frame_i,  // The pixels of a new frame come from now on; for one clock.
-  output logic        row_event_o,
-  output row_event_t  row_o,
+  input  logic              clk_i,
+  input  logic              rst_ni,
+  input  logic              valid_i,
+  output logic              ready_o,
+  input  logic       [23:0] pixel_i,
+  input  logic              line_end_i,
+  input  logic              drain_i,       // Pixels are dropped.
+  input  logic              new_frame_i,   // The pixels of a new frame come from now on; for one clock.
+  output logic              row_event_o,
+  output row_event_t        row_o,
   // Pixel clock.
-  input  logic        pixel_clk_i,
-  input  logic        pixel_rst_ni,
-  input  logic [ 1:0] scale_i,
-  input  logic        row_begin_i,  // A row begins in a few clocks; for one clock.
-  input  logic [ 9:0] row_i,        // Which one.
-  input  logic [ 9:0] column_i,
-  output logic [23:0] pixel_o       // Three clocks after column_i.
+  input  logic              pixel_clk_i,
+  input  logic              pixel_rst_ni,
+  input  logic       [ 1:0] scale_i,
+  input  logic              row_begin_i,   // A row begins in a few clocks; for one clock.
+  input  logic       [ 9:0] row_i,         // The number of that row.
+  input  logic       [ 9:0] column_i,
+  output logic       [23:0] pixel_o        // Three clocks after column_i.
 );
-  if (LineBits < 4 || LineBits > 7) begin : gen_bad_line_bits
-    $error("board_line_buffer: LineBits must be 4 to 7 bits");
-  end
+  if (LineBits < 4 || LineBits > 7) $error("board_line_buffer: LineBits must be 4 to 7 bits");
 
   localparam int unsigned ColumnBits = 10;
   localparam int unsigned Lines = 2 ** LineBits;
 
   // Where the core writes.
-  logic [           8:0] line_q;    // Of the frame: complete lines.
-  logic [           8:0] keep_q;    // The line that the beam shows.
+  logic [8:0] line_q;  // How many lines of the frame are complete.
+  logic [8:0] keep_q;  // The line that the beam shows.
   logic [ColumnBits-1:0] column_q;
-  logic                  ready_q, parity_q, ended_q, restarted_q, accepted;
-  logic                  row_event;
-  row_event_t            row;
-  line_event_t           lines;
+  logic ready_q, parity_q, ended_q, restarted_q, accepted;
+  logic row_event;
+  row_event_t row;
+  line_event_t lines;
 
   assign ready_o  = ready_q || drain_i;
   assign accepted = valid_i && ready_o;
 
   always_ff @(posedge clk_i) begin
-    // Decided anew after each line; a frame has no more lines than the screen has rows.
+    // This is decided anew after each line. A frame has no more lines than the screen has rows.
     ready_q <= line_q - keep_q < 9'(Lines) && line_q < 9'(Rows) && !(accepted && line_end_i) && !ended_q;
     ended_q <= accepted && line_end_i && !drain_i;
     if (row_event) keep_q <= row.line;
@@ -78,10 +76,10 @@ module board_line_buffer
   assign row_o       = row;
 
   // The lines.
-  logic [          23:0] data_q[Lines * 2 ** ColumnBits];
-  logic                  write_q;
+  logic [23:0] data_q[Lines * 2 ** ColumnBits];
+  logic write_q;
   logic [LineBits+ColumnBits-1:0] write_place_q, read_place_q;
-  logic [          23:0] write_pixel_q, read_q;
+  logic [23:0] write_pixel_q, read_q;
 
   always_ff @(posedge clk_i) begin
     write_q       <= accepted && !drain_i;
@@ -91,11 +89,11 @@ module board_line_buffer
   end
 
   // Where the beam reads.
-  logic        new_lines;
+  logic new_lines;
   line_event_t lines_there, lines_q;
-  logic        parity_seen_q, fresh, blank, has_line, shows_q;
-  logic [ 8:0] wanted, line, shown_q;
-  row_event_t  row_here;
+  logic parity_seen_q, fresh, blank, has_line, shows_q;
+  logic [8:0] wanted, line, shown_q;
+  row_event_t row_here;
 
   assign fresh    = lines_q.parity != parity_seen_q;
   assign blank    = row_i >= 10'(Rows);

@@ -1,41 +1,39 @@
-// What the bus of a board with SDRAM does not have: the words of the SDRAM, and two registers. It stands between the two
-// masters and board_bus, and passes all other accesses on.
+// Adds to the bus of a board with SDRAM what board_bus does not have: the words of the SDRAM, and two registers. It
+// stands between the two masters and board_bus, and passes all other accesses on.
 //
 // A word of the octree memory takes as long as its line takes. Words beyond the memory are dropped, and read as 0. The
 // map has room for 2**21 words: register page says which ones. docs/ecp5_boards.md is the reference.
 module board_memory_port
   import board_pkg::*;
 #(
-  // Of the octree memory: word 0 is the last of line 0, a block has a line. 2 .. 2**20.
+  // Lines of the octree memory: word 0 is the last of line 0, and a block has a line. 2 .. 2**20.
   parameter int unsigned Lines = 983_040
 ) (
-  input  logic                 clk_i,
-  input  logic                 rst_ni,
-  // Masters, as board_bus has them.
-  input  logic    [1:0]        valid_i,
-  input  access_t [1:0]        access_i,
-  output logic    [1:0]        done_o,
-  output logic    [1:0][31:0]  data_o,
-  output logic    [1:0]        refused_o,
-  output logic                 written_o,      // A word of the SDRAM was written; for one clock.
+  input  logic                  clk_i,
+  input  logic                  rst_ni,
+  // Masters; see board_bus.
+  input  logic    [  1:0]       valid_i,
+  input  access_t [  1:0]       access_i,
+  output logic    [  1:0]       done_o,
+  output logic    [  1:0][31:0] data_o,
+  output logic    [  1:0]       refused_o,
+  output logic                  written_o,      // A word of the SDRAM was written; for one clock.
   // board_bus.
-  output logic    [1:0]        bus_valid_o,
-  input  logic    [1:0]        bus_done_i,
-  input  logic    [31:0]       bus_data_i,
-  input  logic                 bus_refused_i,
+  output logic    [  1:0]       bus_valid_o,
+  input  logic    [  1:0]       bus_done_i,
+  input  logic    [ 31:0]       bus_data_i,
+  input  logic                  bus_refused_i,
   // A port of the SDRAM's arbiter.
-  output logic                 valid_o,
-  input  logic                 ready_i,
-  output logic                 write_o,
-  output logic    [19:0]       line_o,
-  output logic    [15:0]       mask_o,
-  output logic    [255:0]      line_data_o,
-  input  logic                 done_i,
-  input  logic    [255:0]      line_data_i
+  output logic                  valid_o,
+  input  logic                  ready_i,
+  output logic                  write_o,
+  output logic    [ 19:0]       line_o,
+  output logic    [ 15:0]       mask_o,
+  output logic    [255:0]       line_data_o,
+  input  logic                  done_i,
+  input  logic    [255:0]       line_data_i
 );
-  if (Lines < 2 || Lines > 2 ** 20) begin : gen_bad_lines
-    $error("board_memory_port: Lines must be 2 to 2**20 lines");
-  end
+  if (Lines < 2 || Lines > 2 ** 20) $error("board_memory_port: Lines must be 2 to 2**20 lines");
 
   localparam logic [23:0] Page = 24'h001030;
   localparam logic [23:0] Blocks = 24'h001034;
@@ -48,14 +46,14 @@ module board_memory_port
     Done
   } state_e;
 
-  state_e              state_q;
-  logic                master_q, is_word_q;
-  logic [         1:0] mine, asks, done_q;
-  access_t             access, access_q;
+  state_e state_q;
+  logic master_q, is_word_q;
+  logic [1:0] mine, asks, done_q;
+  access_t access, access_q;
   logic [PageBits-1:0] page_q;
-  logic [        23:0] place;  // Of the word, from the beginning of the SDRAM.
-  logic                beyond;
-  logic [        31:0] data_q;
+  logic [23:0] place;  // The place of the word, from the beginning of the SDRAM.
+  logic beyond;
+  logic [31:0] data_q;
 
   for (genvar m = 0; m < 2; m++) begin : gen_master
     assign mine[m]        = access_i[m].address[23] || access_i[m].address inside {Page, Blocks};
@@ -66,16 +64,16 @@ module board_memory_port
   end
 
   // A master lowers valid_i a clock after done_o.
-  assign asks   = valid_i & mine & ~done_q;
-  assign access = asks[0] ? access_i[0] : access_i[1];
+  assign asks        = valid_i & mine & ~done_q;
+  assign access      = asks[0] ? access_i[0] : access_i[1];
 
-  assign place  = 24'({page_q, access_q.address[22:2]}) + 24'd7;
-  assign beyond = place >= 24'(8 * Lines);
+  assign place       = 24'({page_q, access_q.address[22:2]}) + 24'd7;
+  assign beyond      = place >= 24'(8 * Lines);
 
-  assign valid_o = state_q == Request && !beyond;
-  assign write_o = access_q.write;
-  assign line_o  = place[22:3];
-  assign mask_o  = 16'd3 << {place[2:0], 1'b0};
+  assign valid_o     = state_q == Request && !beyond;
+  assign write_o     = access_q.write;
+  assign line_o      = place[22:3];
+  assign mask_o      = 16'd3 << {place[2:0], 1'b0};
 
   // Ports that do not write bring zeros.
   assign line_data_o = state_q == Request ? {8{access_q.data}} : '0;

@@ -24,13 +24,13 @@ package board_pkg;
   // What the pixel clock tells the system clock at the beginning of each row.
   typedef struct packed {
     logic [9:0] row;
-    logic [8:0] line;      // What it shows, 0 in the blanking.
+    logic [8:0] line;      // The line that it shows, 0 in the blanking.
     logic       underrun;  // It shows an older line than it should, or none.
   } row_event_t;
 
   // What the system clock tells the pixel clock at each complete line, and when a frame starts.
   typedef struct packed {
-    logic       parity;  // Of the frame.
+    logic       parity;  // Changes with each frame.
     logic [8:0] lines;   // Complete lines of the frame.
   } line_event_t;
 

@@ -2,19 +2,19 @@
 module board_player
   import board_pkg::*;
 (
-  input  logic                 clk_i,
-  input  logic                 rst_ni,
-  input  logic                 start_i,    // While busy_o is low.
-  input  logic [TableBits-1:0] word_i,     // Where the list begins.
-  input  logic                 camera_i,   // The list has 16 words at most.
-  output logic                 busy_o,
-  output logic                 refused_o,  // A write was refused; for one clock.
+  input  logic                    clk_i,
+  input  logic                    rst_ni,
+  input  logic                    start_i,    // Only while busy_o is low.
+  input  logic    [TableBits-1:0] word_i,     // The word at which the list begins.
+  input  logic                    camera_i,   // The list has 16 words at most.
+  output logic                    busy_o,
+  output logic                    refused_o,  // A write was refused; for one clock.
   // Bus.
-  output logic                 valid_o,
-  output access_t              access_o,
-  input  logic                 done_i,
-  input  logic [31:0]          data_i,
-  input  logic                 refused_i
+  output logic                    valid_o,
+  output access_t                 access_o,
+  input  logic                    done_i,
+  input  logic    [         31:0] data_i,
+  input  logic                    refused_i
 );
   typedef enum logic [1:0] {
     Idle,
@@ -23,13 +23,13 @@ module board_player
     Write
   } state_e;
 
-  state_e             state_q;
-  logic [TableBits:0] word_q;   // One beyond the table ends the list.
-  logic [        4:0] left_q;   // Words of a camera.
-  logic               camera_q, ends;
-  logic [        7:0] count_q;
-  logic [       23:0] address_q;
-  logic [       31:0] data_q;
+  state_e state_q;
+  logic [TableBits:0] word_q;  // One beyond the table ends the list.
+  logic [4:0] left_q;  // Words of a camera that are left.
+  logic camera_q, ends;
+  logic [7:0] count_q;
+  logic [23:0] address_q;
+  logic [31:0] data_q;
 
   assign busy_o = state_q != Idle;
   assign ends   = word_q[TableBits] || (camera_q && left_q == '0);

@@ -15,22 +15,14 @@ module board_pll #(
   output logic chip_clk_o,
   output logic locked_o
 );
-  if (InputDivider < 1 || InputDivider > 128) begin : gen_bad_input_divider
-    $error("board_pll: InputDivider must be 1 to 128");
-  end
-  if (FeedbackDivider < 1 || FeedbackDivider > 128) begin : gen_bad_feedback_divider
-    $error("board_pll: FeedbackDivider must be 1 to 128");
-  end
-  if (SystemDivider < 1 || SystemDivider > 128) begin : gen_bad_system_divider
-    $error("board_pll: SystemDivider must be 1 to 128");
-  end
+  if (InputDivider < 1 || InputDivider > 128) $error("board_pll: InputDivider must be 1 to 128");
+  if (FeedbackDivider < 1 || FeedbackDivider > 128) $error("board_pll: FeedbackDivider must be 1 to 128");
+  if (SystemDivider < 1 || SystemDivider > 128) $error("board_pll: SystemDivider must be 1 to 128");
 
   localparam int unsigned BitDivider = 6;
   localparam int unsigned PixelDivider = 30;
 
-  if (ChipDelay >= SystemDivider) begin : gen_bad_delay
-    $error("board_pll: ChipDelay must be less than SystemDivider");
-  end
+  if (ChipDelay >= SystemDivider) $error("board_pll: ChipDelay must be less than SystemDivider");
 
   // A phase of "divider - 1" is none: these clocks rise together.
   EHXPLLL #(

@@ -4,28 +4,26 @@ module board_requests
 #(
   parameter int unsigned GapBits = 22  // A request is dropped after 2**GapBits clocks without a byte: 1 .. 32.
 ) (
-  input  logic          clk_i,
-  input  logic          rst_ni,
+  input  logic           clk_i,
+  input  logic           rst_ni,
   // Serial line.
-  input  logic          valid_i,
-  input  logic          broken_i,
-  input  logic [ 7:0]   byte_i,
-  output logic          valid_o,
-  input  logic          ready_i,
-  output logic [ 7:0]   byte_o,
+  input  logic           valid_i,
+  input  logic           broken_i,
+  input  logic    [ 7:0] byte_i,
+  output logic           valid_o,
+  input  logic           ready_i,
+  output logic    [ 7:0] byte_o,
   // Bus.
-  output logic          access_valid_o,
-  output access_t       access_o,
-  input  logic          done_i,
-  input  logic [31:0]   data_i,
-  input  logic          refused_i,
+  output logic           access_valid_o,
+  output access_t        access_o,
+  input  logic           done_i,
+  input  logic    [31:0] data_i,
+  input  logic           refused_i,
   // For one clock.
-  output logic          request_done_o,
-  output logic          request_bad_o
+  output logic           request_done_o,
+  output logic           request_bad_o
 );
-  if (GapBits < 1 || GapBits > 32) begin : gen_bad_gap_bits
-    $error("board_requests: GapBits must be 1 to 32 bits");
-  end
+  if (GapBits < 1 || GapBits > 32) $error("board_requests: GapBits must be 1 to 32 bits");
 
   localparam logic [7:0] RequestMark = 8'h56;
   localparam logic [7:0] AnswerMark = 8'h76;
@@ -54,12 +52,12 @@ module board_requests
     AnswerCrc
   } state_e;
 
-  state_e             state_q;
-  status_e            status_q;
-  logic [        7:0] operation_q, sequence_q, count_q, word_q;
-  logic [       23:0] address_q;
-  logic [        2:0] place_q;    // Of a byte in the header, a word, the CRC.
-  logic               broken_q, malformed, last_word, answers_words, receives;
+  state_e state_q;
+  status_e status_q;
+  logic [7:0] operation_q, sequence_q, count_q, word_q;
+  logic [23:0] address_q;
+  logic [2:0] place_q;  // The place of a byte in the header, a word or the CRC.
+  logic broken_q, malformed, last_word, answers_words, receives;
   logic [GapBits-1:0] gap_q;
 
   assign malformed     = !(operation_q inside {Read, Write}) || count_q == '0 || address_q[1:0] != '0;
@@ -69,9 +67,9 @@ module board_requests
 
   // The words of the request, or of the answer. Never read in the clock in which they are written.
   (* no_rw_check *)
-  logic [31:0] words_q  [256];
+  logic [31:0] words_q[256];
   logic [31:0] fetched_q, shift_q, stored;
-  logic        stores;
+  logic stores;
 
   assign stores = (state_q == Words && valid_i && place_q == 3'd3) || (state_q == Access && done_i);
   assign stored = state_q == Words ? {byte_i, shift_q[31:8]} : data_i;
@@ -82,7 +80,7 @@ module board_requests
   end
 
   // CRC of what is received, and of what is sent.
-  logic        crc_clear, crc_valid, crc_busy, crc_right, sent;
+  logic crc_clear, crc_valid, crc_busy, crc_right, sent;
   logic [31:0] crc;
 
   assign sent      = valid_o && ready_i;

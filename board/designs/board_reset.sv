@@ -1,4 +1,5 @@
-// Reset of one clock: low for 16 clocks from the PLL's lock on. Flip-flops of an ECP5 are 0 when it is configured.
+// Resets one clock: rst_no is low for 16 clocks from the PLL's lock on. Flip-flops of an ECP5 are 0 when it is
+// configured.
 module board_reset (
   input  logic clk_i,
   input  logic locked_i,  // Any clock.

@@ -6,16 +6,16 @@ module board_screen
   input  logic             rst_ni,
   // The line buffer.
   output logic             row_begin_o,
-  output logic [9:0]       row_o,
-  output logic [9:0]       column_o,
+  output logic [ 9:0]      row_o,
+  output logic [ 9:0]      column_o,
   input  logic [23:0]      pixel_i,      // Three clocks after column_o.
   // Blue, green, red.
-  output logic [2:0][9:0]  words_o
+  output logic [ 2:0][9:0] words_o
 );
-  localparam int unsigned Clocks = 3;  // From a column to its pixel.
+  localparam int unsigned Clocks = 3;  // Clocks from a column to its pixel.
 
   logic [9:0] column_q, row_q;
-  logic       last_column;
+  logic last_column;
   logic [Clocks-1:0] visible_q, hsync_q, vsync_q;  // Syncs are low while they pulse.
 
   assign last_column = column_q == 10'(ColumnsTotal - 1);
@@ -27,9 +27,9 @@ module board_screen
       column_q <= '0;
       row_q    <= 10'(Rows);
     end
-    visible_q <= {visible_q[Clocks-2:0], column_q < 10'(Columns) && row_q < 10'(Rows)};
-    hsync_q   <= {hsync_q[Clocks-2:0], !(column_q >= 10'(ColumnSyncBegin) && column_q < 10'(ColumnSyncEnd))};
-    vsync_q   <= {vsync_q[Clocks-2:0], !(row_q >= 10'(RowSyncBegin) && row_q < 10'(RowSyncEnd))};
+    visible_q   <= {visible_q[Clocks-2:0], column_q < 10'(Columns) && row_q < 10'(Rows)};
+    hsync_q     <= {hsync_q[Clocks-2:0], !(column_q >= 10'(ColumnSyncBegin) && column_q < 10'(ColumnSyncEnd))};
+    vsync_q     <= {vsync_q[Clocks-2:0], !(row_q >= 10'(RowSyncBegin) && row_q < 10'(RowSyncEnd))};
     // The next row is announced behind the visible part of this one.
     row_begin_o <= rst_ni && column_q == 10'(ColumnSyncEnd);
     row_o       <= row_q == 10'(RowsTotal - 1) ? '0 : row_q + 1'b1;

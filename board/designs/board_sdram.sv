@@ -20,7 +20,7 @@ module board_sdram #(
   input  logic [ 15:0] request_mask_i,   // Which half words are written.
   input  logic [255:0] request_data_i,
   output logic         done_o,           // For one clock, once per request.
-  output logic [255:0] line_o,           // With done_o of a read.
+  output logic [255:0] line_o,           // What was read, with done_o.
   // To the pins.
   output logic         sdram_cke_o,
   output logic         sdram_cs_no,
@@ -34,25 +34,21 @@ module board_sdram #(
   output logic [ 15:0] sdram_dq_o,
   input  logic [ 15:0] sdram_dq_i
 );
-  if (ClockHz < 12_000_000 || ClockHz > 80_000_000) begin : gen_bad_clock_hz
-    $error("board_sdram: ClockHz must be 12 to 80 million");
-  end
-  if (PowerOnUs < 1 || PowerOnUs > 50_000) begin : gen_bad_power_on_us
-    $error("board_sdram: PowerOnUs must be 1 to 50,000 us");
-  end
+  if (ClockHz < 12_000_000 || ClockHz > 80_000_000) $error("board_sdram: ClockHz must be 12 to 80 million");
+  if (PowerOnUs < 1 || PowerOnUs > 50_000) $error("board_sdram: PowerOnUs must be 1 to 50,000 us");
 
   localparam int unsigned PowerOnClocks = (ClockHz / 1000) * PowerOnUs / 1000;
   // 8192 rows in 64 ms, less what the lines under way take.
   localparam int unsigned RefreshClocks = (ClockHz / 1000) * 64 / 8192 - 80;
   localparam int unsigned CountBits = $clog2(PowerOnClocks + 128);
   localparam int unsigned RefreshBits = $clog2(RefreshClocks + 1);
-  localparam logic [12:0] Mode = 13'h033;          // Bursts of 8, sequential, CAS latency 3.
-  localparam logic [ 2:0] RefreshWait = 3'd6;      // tRFC.
-  localparam logic [ 1:0] RowWait = 2'd1;          // tRCD, less the clock that sees it.
-  localparam logic [ 3:0] CloseAfterRead = 4'd10;  // From the last burst's command: the burst, tRP.
-  localparam logic [ 3:0] CloseAfterWrite = 4'd11; // The burst, tWR, tRP.
-  localparam logic [ 4:0] ReadToWrite = 5'd20;     // The chip has let go of the data.
-  localparam int unsigned DoneClocks = 21;         // From a line's first command to its last half word.
+  localparam logic [12:0] Mode = 13'h033;  // Bursts of 8, sequential, CAS latency 3.
+  localparam logic [2:0] RefreshWait = 3'd6;  // tRFC.
+  localparam logic [1:0] RowWait = 2'd1;  // tRCD, less the clock that sees the row open.
+  localparam logic [3:0] CloseAfterRead = 4'd10;  // Clocks from the last burst's command: the burst, tRP.
+  localparam logic [3:0] CloseAfterWrite = 4'd11;  // The burst, tWR, tRP.
+  localparam logic [4:0] ReadToWrite = 5'd20;  // The chip has let go of the data.
+  localparam int unsigned DoneClocks = 21;  // Clocks from a line's first command to its last half word.
 
   // {RAS, CAS, WE}, low.
   typedef enum logic [2:0] {
@@ -71,39 +67,39 @@ module board_sdram #(
     Run
   } state_e;
 
-  state_e                 state_q;
-  command_e               command_q;
-  logic                   selected_q, refresh_due_q;
-  logic [  CountBits-1:0] count_q;
+  state_e state_q;
+  command_e command_q;
+  logic selected_q, refresh_due_q;
+  logic [CountBits-1:0] count_q;
   logic [RefreshBits-1:0] refresh_q;
-  logic [            2:0] refresh_wait_q;
+  logic [2:0] refresh_wait_q;
 
   // The line that waits.
-  logic         next_valid_q, next_open_q, next_write_q;
-  logic [ 19:0] next_line_q;
-  logic [ 15:0] next_mask_q;
+  logic next_valid_q, next_open_q, next_write_q;
+  logic [19:0] next_line_q;
+  logic [15:0] next_mask_q;
   logic [255:0] next_data_q;
-  logic [  1:0] row_wait_q;
+  logic [1:0] row_wait_q;
 
   // The line that streams.
-  logic         streams_q, write_q;
-  logic [  3:0] step_q;
-  logic [  6:0] place_q;      // {column / 16, bank}.
-  logic [ 15:0] mask_q, dq_q;
+  logic streams_q, write_q;
+  logic [3:0] step_q;
+  logic [6:0] place_q;  // {column / 16, bank}.
+  logic [15:0] mask_q, dq_q;
   logic [255:0] data_q;
-  logic [  4:0] turn_q;       // Until a write may start.
+  logic [4:0] turn_q;  // Clocks until a write may start.
 
   // Banks.
-  logic [3:0]      open_q;
-  logic [3:0][3:0] closes_q;  // Until they may be opened.
+  logic [3:0] open_q;
+  logic [3:0][3:0] closes_q;  // Clocks until the banks may be opened.
 
   logic [DoneClocks-1:0] under_way_q;
-  logic [255:0]          line_q;
-  logic                  starts, second, opens, refreshes;
-  logic [  1:0]          next_bank;
+  logic [255:0] line_q;
+  logic starts, second, opens, refreshes;
+  logic [1:0] next_bank;
 
   assign next_bank = next_line_q[1:0];
-  assign second    = streams_q && step_q == 4'd7;
+  assign second = streams_q && step_q == 4'd7;
   assign starts    = next_valid_q && next_open_q && row_wait_q == '0 && (!streams_q || step_q == 4'd15) &&
       (!next_write_q || turn_q == '0);
   assign opens     = next_valid_q && !next_open_q && !second && !open_q[next_bank] && closes_q[next_bank] == '0 &&
@@ -201,9 +197,9 @@ module board_sdram #(
           sdram_dqm_o    <= next_write_q ? {2{!next_mask_q[0]}} : '0;
           if (!next_write_q) turn_q <= ReadToWrite;
         end else if (second) begin
-          command_q             <= write_q ? Write : Read;
-          sdram_ba_o            <= place_q[1:0];
-          sdram_a_o             <= {2'b00, 1'b1, 1'b0, place_q[6:2], 1'b1, 3'd0};
+          command_q              <= write_q ? Write : Read;
+          sdram_ba_o             <= place_q[1:0];
+          sdram_a_o              <= {2'b00, 1'b1, 1'b0, place_q[6:2], 1'b1, 3'd0};
           open_q[place_q[1:0]]   <= 1'b0;
           closes_q[place_q[1:0]] <= write_q ? CloseAfterWrite : CloseAfterRead;
         end else if (opens) begin

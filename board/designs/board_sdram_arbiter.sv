@@ -20,22 +20,20 @@ module board_sdram_arbiter #(
   output logic                    request_valid_o,
   input  logic                    request_ready_i,
   output logic                    request_write_o,
-  output logic [ 19:0]            request_line_o,
-  output logic [ 15:0]            request_mask_o,
-  output logic [255:0]            request_data_o,
+  output logic [     19:0]        request_line_o,
+  output logic [     15:0]        request_mask_o,
+  output logic [    255:0]        request_data_o,
   input  logic                    done_i
 );
-  if (Ports < 2) begin : gen_bad_ports
-    $error("board_sdram_arbiter: Ports must be 2 or more");
-  end
+  if (Ports < 2) $error("board_sdram_arbiter: Ports must be 2 or more");
 
   localparam int unsigned PortBits = $clog2(Ports);
   localparam int unsigned UnderWayBits = 2;  // The controller has three lines at most.
 
-  logic [Ports-1:0]        others, later, late_q;  // late_q: ports behind the last one that had a line.
-  logic [PortBits-1:0]     next;
-  logic                    screen_q;               // The screen had the line before.
-  logic [PortBits-1:0]     owners_q[2**UnderWayBits];
+  logic [Ports-1:0] others, later, late_q;  // late_q: ports behind the last one that had a line.
+  logic [PortBits-1:0] next;
+  logic screen_q;  // The screen had the line before.
+  logic [PortBits-1:0] owners_q[2**UnderWayBits];
   logic [UnderWayBits-1:0] first_q, last_q;
 
   assign others = valid_i & ~Ports'(1);
@@ -59,9 +57,9 @@ module board_sdram_arbiter #(
   end
 
   always_comb begin
-    ready_o                  = '0;
-    ready_o[next]            = request_ready_i && request_valid_o;
-    done_o                   = '0;
+    ready_o                   = '0;
+    ready_o[next]             = request_ready_i && request_valid_o;
+    done_o                    = '0;
     done_o[owners_q[first_q]] = done_i;
   end
 

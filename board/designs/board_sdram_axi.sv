@@ -4,19 +4,19 @@
 module board_sdram_axi
   import voxrt_pkg::*;
 (
-  input  logic               clk_i,
-  input  logic               rst_ni,
-  input  axi_read_request_t  axi_i,
-  output axi_read_response_t axi_o,
-  output logic               valid_o,
-  input  logic               ready_i,
-  output logic [ 19:0]       line_o,
-  input  logic               done_i,
-  input  logic [255:0]       data_i
+  input  logic                       clk_i,
+  input  logic                       rst_ni,
+  input  axi_read_request_t          axi_i,
+  output axi_read_response_t         axi_o,
+  output logic                       valid_o,
+  input  logic                       ready_i,
+  output logic               [ 19:0] line_o,
+  input  logic                       done_i,
+  input  logic               [255:0] data_i
 );
-  logic         pending_q, under_way_q, beats_q;
-  logic [ 19:0] line_q;
-  logic [  1:0] beat_q;
+  logic pending_q, under_way_q, beats_q;
+  logic [19:0] line_q;
+  logic [1:0] beat_q;
   logic [255:0] data_q;
 
   // A new address waits while the line before is read; it is asked for when that line's last beat has gone.

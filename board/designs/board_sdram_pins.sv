@@ -5,7 +5,7 @@
 // clocks after the command has left its flip-flop. docs/ecp5_boards.md has the sums.
 module board_sdram_pins (
   input  logic        clk_i,
-  input  logic        chip_clk_i,   // As clk_i, later by ChipDelay of board_pll.
+  input  logic        chip_clk_i,  // clk_i, later by ChipDelay of board_pll.
   input  logic        cke_i,
   input  logic        cs_ni,
   input  logic        ras_ni,

@@ -6,19 +6,17 @@ module board_serializer #(
   input  logic                     pixel_clk_i,
   input  logic                     pixel_rst_ni,
   input  logic                     bit_clk_i,
-  input  logic [Channels-1:0][9:0] words_i,      // Bit 0 goes first.
+  input  logic [Channels-1:0][9:0] words_i,       // Bit 0 goes first.
   output logic [Channels-1:0]      pins_o
 );
-  if (Channels < 1) begin : gen_bad_channels
-    $error("board_serializer: Channels must be 1 or more");
-  end
+  if (Channels < 1) $error("board_serializer: Channels must be 1 or more");
 
   logic pixel_toggle_q;
   always_ff @(posedge pixel_clk_i) pixel_toggle_q <= pixel_rst_ni && !pixel_toggle_q;
 
   // Words have been still for two bit clocks when they are taken.
   logic [2:0] toggles_q;
-  logic       load;
+  logic load;
 
   always_ff @(posedge bit_clk_i) begin
     toggles_q <= {toggles_q[1:0], pixel_toggle_q};

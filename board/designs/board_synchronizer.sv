@@ -1,4 +1,4 @@
-// A bit from another clock, two clocks later.
+// Gives a bit of another clock, two clocks later. Use it for single bits alone; board_event takes values of more.
 module board_synchronizer (
   input  logic clk_i,
   input  logic bit_i,

@@ -1,4 +1,4 @@
-// What is between the clocks and the pins of a board: core, bus, player, frames, serial line, line buffer, screen.
+// Everything between the clocks and the pins of a board: core, bus, player, frames, serial line, line buffer, screen.
 module board_system
   import board_pkg::*;
 #(
@@ -19,34 +19,34 @@ module board_system
   parameter string       TableFile    = ""
 ) (
   // System clock.
-  input  logic             clk_i,
-  input  logic             rst_ni,
-  input  logic             rx_i,
-  output logic             tx_o,
-  input  logic [2:0]       buttons_i,
-  output logic [7:0]       leds_o,
+  input  logic            clk_i,
+  input  logic            rst_ni,
+  input  logic            rx_i,
+  output logic            tx_o,
+  input  logic [2:0]      buttons_i,
+  output logic [7:0]      leds_o,
   // Pixel clock.
-  input  logic             pixel_clk_i,
-  input  logic             pixel_rst_ni,
-  output logic [2:0][9:0]  words_o        // DVI: blue, green, red.
+  input  logic            pixel_clk_i,
+  input  logic            pixel_rst_ni,
+  output logic [2:0][9:0] words_o        // DVI: blue, green, red.
 );
   localparam int unsigned AccessClocks = voxrt_pkg::access_clocks(MemoryForm);
 
-  logic    [ 1:0] bus_valid, bus_done;
-  access_t [ 1:0] bus_access;
-  logic    [31:0] bus_data;
-  logic           bus_refused;
+  logic [1:0] bus_valid, bus_done;
+  access_t [1:0] bus_access;
+  logic [31:0] bus_data;
+  logic bus_refused;
 
   // Core.
-  logic        awvalid, awready, wvalid, wready, bvalid, arvalid, arready, rvalid;
+  logic awvalid, awready, wvalid, wready, bvalid, arvalid, arready, rvalid;
   logic [10:0] awaddr, araddr;
   logic [31:0] wdata, rdata;
-  logic [ 1:0] bresp, rresp;
-  logic        memory_en, memory_write;
+  logic [1:0] bresp, rresp;
+  logic memory_en, memory_write;
   logic [31:0] memory_address, memory_data, memory_read;
-  logic        stream_valid, stream_ready, stream_user, stream_last;
+  logic stream_valid, stream_ready, stream_user, stream_last;
   logic [31:0] stream_data;
-  logic [ 3:0] unused_keep;
+  logic [3:0] unused_keep;
 
   voxrt_core #(
     .Lanes       (Lanes),
@@ -87,31 +87,31 @@ module board_system
     .bram_rddata_o (memory_read),
     // No external memory.
     .m_axi0_arvalid(),
-    .m_axi0_araddr(),
-    .m_axi0_arlen(),
-    .m_axi0_arsize(),
+    .m_axi0_araddr (),
+    .m_axi0_arlen  (),
+    .m_axi0_arsize (),
     .m_axi0_arburst(),
     .m_axi0_arcache(),
-    .m_axi0_arprot(),
-    .m_axi0_rready(),
+    .m_axi0_arprot (),
+    .m_axi0_rready (),
     .m_axi0_arready(1'b0),
-    .m_axi0_rvalid(1'b0),
-    .m_axi0_rdata(64'b0),
-    .m_axi0_rresp(2'b0),
-    .m_axi0_rlast(1'b0),
+    .m_axi0_rvalid (1'b0),
+    .m_axi0_rdata  (64'b0),
+    .m_axi0_rresp  (2'b0),
+    .m_axi0_rlast  (1'b0),
     .m_axi1_arvalid(),
-    .m_axi1_araddr(),
-    .m_axi1_arlen(),
-    .m_axi1_arsize(),
+    .m_axi1_araddr (),
+    .m_axi1_arlen  (),
+    .m_axi1_arsize (),
     .m_axi1_arburst(),
     .m_axi1_arcache(),
-    .m_axi1_arprot(),
-    .m_axi1_rready(),
+    .m_axi1_arprot (),
+    .m_axi1_rready (),
     .m_axi1_arready(1'b0),
-    .m_axi1_rvalid(1'b0),
-    .m_axi1_rdata(64'b0),
-    .m_axi1_rresp(2'b0),
-    .m_axi1_rlast(1'b0),
+    .m_axi1_rvalid (1'b0),
+    .m_axi1_rdata  (64'b0),
+    .m_axi1_rresp  (2'b0),
+    .m_axi1_rlast  (1'b0),
     .m_axis_tvalid (stream_valid),
     .m_axis_tready (stream_ready),
     .m_axis_tdata  (stream_data),
@@ -121,12 +121,12 @@ module board_system
   );
 
   // Control.
-  logic                 register_en, register_write, table_write, row_event, drain, new_frame;
-  logic [          3:0] register_number;
-  logic [         31:0] register_data, register_read, table_data, table_read;
+  logic register_en, register_write, table_write, row_event, drain, new_frame;
+  logic [3:0] register_number;
+  logic [31:0] register_data, register_read, table_data, table_read;
   logic [TableBits-1:0] table_word;
-  row_event_t           row;
-  logic [          1:0] scale;
+  row_event_t row;
+  logic [1:0] scale;
 
   board_control #(
     .ClockHz   (ClockHz),
@@ -204,11 +204,11 @@ module board_system
   );
 
   // Pixels.
-  logic             row_begin;
-  logic [1:0]       pixel_scale;
-  logic [9:0]       beam_row, beam_column;
-  logic [23:0]      pixel, beam_pixel;
-  logic             pixel_valid, pixel_ready, line_end;
+  logic row_begin;
+  logic [1:0] pixel_scale;
+  logic [9:0] beam_row, beam_column;
+  logic [23:0] pixel, beam_pixel;
+  logic pixel_valid, pixel_ready, line_end;
 
   board_unpacker u_unpacker (
     .clk_i,
@@ -237,21 +237,21 @@ module board_system
   ) u_lines (
     .clk_i,
     .rst_ni,
-    .valid_i     (pixel_valid),
-    .ready_o     (pixel_ready),
-    .pixel_i     (pixel),
-    .line_end_i  (line_end),
-    .drain_i     (drain),
-    .new_frame_i (new_frame),
-    .row_event_o (row_event),
-    .row_o       (row),
+    .valid_i    (pixel_valid),
+    .ready_o    (pixel_ready),
+    .pixel_i    (pixel),
+    .line_end_i (line_end),
+    .drain_i    (drain),
+    .new_frame_i(new_frame),
+    .row_event_o(row_event),
+    .row_o      (row),
     .pixel_clk_i,
     .pixel_rst_ni,
-    .scale_i     (pixel_scale),
-    .row_begin_i (row_begin),
-    .row_i       (beam_row),
-    .column_i    (beam_column),
-    .pixel_o     (beam_pixel)
+    .scale_i    (pixel_scale),
+    .row_begin_i(row_begin),
+    .row_i      (beam_row),
+    .column_i   (beam_column),
+    .pixel_o    (beam_pixel)
   );
 
   board_screen u_screen (

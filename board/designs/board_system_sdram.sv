@@ -1,5 +1,5 @@
-// What is between the clocks and the pins of a board whose octree and frames are in SDRAM: core, control, SDRAM, frames,
-// screen. The screen shows whole frames at its own rate, whatever a scene costs.
+// Everything between the clocks and the pins of a board whose octree and frames are in SDRAM: core, control, SDRAM,
+// frames, screen. The screen shows whole frames at its own rate, whatever a scene costs.
 //
 // Lines of 32 bytes in the SDRAM: up to 0xEFFFF the octree, word 0 at the end of line 0; from 0xF0000 on two frames, each
 // of 480 rows of 64 lines.
@@ -31,28 +31,26 @@ module board_system_sdram
   input  logic             rst_ni,
   input  logic             rx_i,
   output logic             tx_o,
-  input  logic [2:0]       buttons_i,
-  output logic [7:0]       leds_o,
+  input  logic [ 2:0]      buttons_i,
+  output logic [ 7:0]      leds_o,
   // SDRAM, to board_sdram_pins.
   output logic             sdram_cke_o,
   output logic             sdram_cs_no,
   output logic             sdram_ras_no,
   output logic             sdram_cas_no,
   output logic             sdram_we_no,
-  output logic [1:0]       sdram_ba_o,
+  output logic [ 1:0]      sdram_ba_o,
   output logic [12:0]      sdram_a_o,
-  output logic [1:0]       sdram_dqm_o,
+  output logic [ 1:0]      sdram_dqm_o,
   output logic             sdram_dq_oe_o,
   output logic [15:0]      sdram_dq_o,
   input  logic [15:0]      sdram_dq_i,
   // Pixel clock.
   input  logic             pixel_clk_i,
   input  logic             pixel_rst_ni,
-  output logic [2:0][9:0]  words_o          // DVI: blue, green, red.
+  output logic [ 2:0][9:0] words_o         // DVI: blue, green, red.
 );
-  if (MemoryForm != CachedForm) begin : gen_bad_form
-    $error("board_system_sdram: MemoryForm must be 2, behind caches");
-  end
+  if (MemoryForm != CachedForm) $error("board_system_sdram: MemoryForm must be 2, behind caches");
 
   // Ports of the arbiter: the screen, the core's two, words of the host and of lists, the boot scene, the core's pixels.
   localparam int unsigned Screen = 0;
@@ -62,24 +60,24 @@ module board_system_sdram
   localparam int unsigned Pixels = 5;
   localparam int unsigned Ports = 6;
 
-  logic [Ports-1:0]        valid, ready, writes, done;
-  logic [Ports-1:0][ 19:0] lines;
-  logic [Ports-1:0][ 15:0] masks;
+  logic [Ports-1:0] valid, ready, writes, done;
+  logic [Ports-1:0][19:0] lines;
+  logic [Ports-1:0][15:0] masks;
   logic [Ports-1:0][255:0] data;
-  logic                    urgent, request_valid, request_ready, request_write, request_done;
-  logic [ 19:0]            request_line;
-  logic [ 15:0]            request_mask;
-  logic [255:0]            request_data, read_data;
+  logic urgent, request_valid, request_ready, request_write, request_done;
+  logic [19:0] request_line;
+  logic [15:0] request_mask;
+  logic [255:0] request_data, read_data;
 
   // Core.
-  logic        awvalid, awready, wvalid, wready, bvalid, arvalid, arready, rvalid;
+  logic awvalid, awready, wvalid, wready, bvalid, arvalid, arready, rvalid;
   logic [10:0] awaddr, araddr;
   logic [31:0] wdata, rdata;
-  logic [ 1:0] bresp, rresp;
-  logic        stream_valid, stream_ready, stream_user, stream_last;
+  logic [1:0] bresp, rresp;
+  logic stream_valid, stream_ready, stream_user, stream_last;
   logic [31:0] stream_data, unused_memory_read;
-  logic [ 3:0] unused_keep;
-  axi_read_request_t  [1:0] axi_request;
+  logic [3:0] unused_keep;
+  axi_read_request_t [1:0] axi_request;
   axi_read_response_t [1:0] axi_response;
 
   voxrt_core #(
@@ -171,19 +169,19 @@ module board_system_sdram
   end
 
   // Control. No frame starts before the boot scene is in the SDRAM.
-  logic                 register_en, register_write, table_write, row_event, new_frame, booting, written, written_q;
-  logic                 unused_drain;
-  logic [          3:0] register_number;
-  logic [         31:0] register_data, register_read, table_data, table_read;
+  logic register_en, register_write, table_write, row_event, new_frame, booting, written, written_q;
+  logic unused_drain;
+  logic [3:0] register_number;
+  logic [31:0] register_data, register_read, table_data, table_read;
   logic [TableBits-1:0] table_word;
-  row_event_t           row;
-  logic [          1:0] scale;
+  row_event_t row;
+  logic [1:0] scale;
 
-  logic    [1:0]       master_valid, master_done, master_refused, bus_valid, bus_done;
-  access_t [1:0]       master_access;
-  logic    [1:0][31:0] master_data;
-  logic    [31:0]      bus_data;
-  logic                bus_refused;
+  logic [1:0] master_valid, master_done, master_refused, bus_valid, bus_done;
+  access_t [1:0] master_access;
+  logic [1:0][31:0] master_data;
+  logic [31:0] bus_data;
+  logic bus_refused;
 
   board_control #(
     .ClockHz   (ClockHz),
@@ -363,9 +361,9 @@ module board_system_sdram
   );
 
   // Frames.
-  logic       hold, drawn, shown, visible, reading;
+  logic hold, drawn, shown, visible, reading;
   logic [1:0] shown_scale;
-  logic       row_begin;
+  logic row_begin;
   logic [9:0] beam_row, beam_column;
   logic [23:0] beam_pixel;
 
@@ -402,24 +400,24 @@ module board_system_sdram
   board_frame_reader u_reader (
     .clk_i,
     .rst_ni,
-    .visible_i   (visible),
-    .frame_i     (shown),
-    .scale_i     (shown_scale),
-    .reading_o   (reading),
-    .row_event_o (row_event),
-    .row_o       (row),
-    .valid_o     (valid[Screen]),
-    .ready_i     (ready[Screen]),
-    .urgent_o    (urgent),
-    .line_o      (lines[Screen]),
-    .done_i      (done[Screen]),
-    .data_i      (read_data),
+    .visible_i  (visible),
+    .frame_i    (shown),
+    .scale_i    (shown_scale),
+    .reading_o  (reading),
+    .row_event_o(row_event),
+    .row_o      (row),
+    .valid_o    (valid[Screen]),
+    .ready_i    (ready[Screen]),
+    .urgent_o   (urgent),
+    .line_o     (lines[Screen]),
+    .done_i     (done[Screen]),
+    .data_i     (read_data),
     .pixel_clk_i,
     .pixel_rst_ni,
-    .row_begin_i (row_begin),
-    .row_i       (beam_row),
-    .column_i    (beam_column),
-    .pixel_o     (beam_pixel)
+    .row_begin_i(row_begin),
+    .row_i      (beam_row),
+    .column_i   (beam_column),
+    .pixel_o    (beam_pixel)
   );
 
   board_screen u_screen (

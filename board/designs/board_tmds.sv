@@ -21,13 +21,13 @@ module board_tmds (
   endfunction
 
   // 1: count.
-  logic       visible_q[1:2];
+  logic visible_q[1:2];
   logic [1:0] control_q[1:2];
   logic [7:0] data_q;
   logic [3:0] ones_q;
 
   // 2: few transitions.
-  logic       inverts;
+  logic inverts;
   logic [8:0] chain, chain_q;
   logic [3:0] chain_ones_q;
 
@@ -46,8 +46,8 @@ module board_tmds (
   end
 
   // 3: no mean: invert where that brings the sum of ones less zeros towards 0.
-  logic signed [4:0] balance_q, balance, difference;  // Half of ones less zeros.
-  logic              flips;
+  logic signed [4:0] balance_q, balance, difference;  // Half the number of ones less that of zeros.
+  logic flips;
 
   assign difference = $signed({1'b0, chain_ones_q}) - 5'sd4;
 

@@ -16,23 +16,19 @@ module board_uart #(
   input  logic [7:0] byte_i,
   output logic       tx_o
 );
-  if (Baud > ClockHz / 8) begin : gen_bad_clock_hz
-    $error("board_uart: ClockHz and Baud must be in a ratio of 8 or more");
-  end
-  if (Baud < 300) begin : gen_bad_baud
-    $error("board_uart: Baud must be 300 or more");
-  end
+  if (Baud > ClockHz / 8) $error("board_uart: ClockHz and Baud must be in a ratio of 8 or more");
+  if (Baud < 300) $error("board_uart: Baud must be 300 or more");
 
   // The part of a bit per clock, in 1/2**PhaseBits: the baud is met within 1 in 2**16.
   localparam int unsigned PhaseBits = 20;
   localparam int unsigned Step = int'((64'(Baud) * (64'd1 << PhaseBits) + 64'(ClockHz) / 2) / 64'(ClockHz));
 
   // Receive: sample in the middle of each bit.
-  logic                 rx;
+  logic rx;
   logic [PhaseBits-1:0] rx_phase_q;
-  logic                 rx_sample;
-  logic [          3:0] rx_left_q;   // Bits to come, with start and stop.
-  logic [          7:0] rx_bits_q;
+  logic rx_sample;
+  logic [3:0] rx_left_q;  // Bits to come, with start and stop.
+  logic [7:0] rx_bits_q;
 
   board_synchronizer u_rx (
     .clk_i,
@@ -68,9 +64,9 @@ module board_uart #(
 
   // Send.
   logic [PhaseBits-1:0] tx_phase_q, tx_phase;
-  logic                 tx_next;
-  logic [          3:0] tx_left_q;
-  logic [          9:0] tx_bits_q;
+  logic tx_next;
+  logic [3:0] tx_left_q;
+  logic [9:0] tx_bits_q;
 
   assign {tx_next, tx_phase} = tx_phase_q + (PhaseBits + 1)'(Step);
   assign ready_o             = tx_left_q == '0;

@@ -1,5 +1,5 @@
-// From the core's video stream (rtl/voxrt_pixel_packer.sv) back to pixels of 24 bits, red highest: 3 words, 4 pixels.
-// Widths are multiples of 4 pixels.
+// Turns the core's video stream (rtl/shading/voxrt_pixel_packer.sv) back into pixels of 24 bits, red highest: 3 words
+// give 4 pixels. Widths are multiples of 4 pixels.
 module board_unpacker (
   input  logic        clk_i,
   input  logic        rst_ni,
@@ -14,8 +14,8 @@ module board_unpacker (
   output logic        line_end_o
 );
   logic [23:0] kept_q;  // Bytes that belong to the next pixel, the first one lowest.
-  logic [ 1:0] bytes_q, bytes;
-  logic        last_q;
+  logic [1:0] bytes_q, bytes;
+  logic last_q;
   logic [23:0] pixel;
 
   // The first word of a frame begins with a pixel, whatever was before.

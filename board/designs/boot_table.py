@@ -189,7 +189,7 @@ def orbit_steps(cameras: Sequence[Camera], roots: Sequence[int]) -> list[Writes]
 
 
 def encode_octree(words: NDArray[np.uint32], block_bits: int) -> NDArray[np.uint32]:
-    """Give the rows of the octree memory, as ``rtl/voxrt_word_encoder.sv`` makes them of words.
+    """Give the rows of the octree memory, as ``rtl/memory/voxrt_word_encoder.sv`` makes them of words.
 
     Parameters
     ----------

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 DESIGNS = Path(__file__).resolve().parent
 RTL = DESIGNS.parents[1] / "rtl"
+HEADER = RTL / "voxrt_assert.svh"
+"""The sources of the core include it."""
 TOP = "ecp5_top"
 SOURCE_LISTS = {"ecp5_top": "ecp5.f", "ecp5_top_sdram": "ecp5_sdram.f"}
 """The file that lists the sources of a design, by its top."""
@@ -82,14 +84,14 @@ def list_sources(top: str = TOP) -> list[Path]:
         folder / line
         for folder, name in ((RTL, "voxrt.f"), (DESIGNS, SOURCE_LISTS[top]))
         for line in (folder / name).read_text().splitlines()
-        if not line.startswith("//")
+        if line.endswith(".sv")
     ]
 
 
 def sources_digest(board: Mapping[str, Any]) -> str:
     """Give the SHA-256 of all that a base design is made of: sources, parameters, pins."""
     digest = hashlib.sha256()
-    for path in list_sources(top_of(board)):
+    for path in (HEADER, *list_sources(top_of(board))):
         digest.update(path.read_bytes())
     digest.update(json.dumps([parameters(board), constraints(board)]).encode())
     return digest.hexdigest()
@@ -166,12 +168,11 @@ def synthesize(
     for name, rows in contents.items():
         (folder / f"{name}.hex").write_text("".join(f"{row:x}\n" for row in rows.tolist()))
     # Paths in the netlist are of the sources' copies: equal on every machine. yosys under WASM sees this folder.
-    copies = []
-    for path in list_sources(top) if sources is None else sources:
-        copy = folder / "sources" / path.name
-        copy.parent.mkdir(exist_ok=True)
-        copy.write_text(path.read_text())
-        copies.append(f"sources/{path.name}")
+    (folder / "sources").mkdir(exist_ok=True)
+    read = list_sources(top) if sources is None else sources
+    for path in (HEADER, *read):
+        (folder / "sources" / path.name).write_text(path.read_text())
+    copies = [f"sources/{path.name}" for path in read]
     settings = " ".join(f"-G {name}={value}" for name, value in parameters(board).items()) if sources is None else ""
     files = '-G OctreeFile="octree.hex" -G TableFile="table.hex"'
     script = (

@@ -17,8 +17,8 @@ module ecp5_top #(
   parameter int unsigned LineBits        = 4,
   parameter int unsigned GapBits         = 22,
   parameter bit          ButtonsLow      = 1'b0,
-  parameter int unsigned Leds            = 8,   // 1 .. 8.
-  parameter int unsigned Highs           = 1,   // Pins that are always 1: 1 or more.
+  parameter int unsigned Leds            = 8,     // 1 .. 8.
+  parameter int unsigned Highs           = 1,     // Pins that are always 1: 1 or more.
   parameter string       OctreeFile      = "",
   parameter string       TableFile       = ""
 ) (
@@ -30,12 +30,8 @@ module ecp5_top #(
   output logic [Highs-1:0] high,     // Always 1.
   output logic [      3:0] dvi       // Blue, green, red, clock.
 );
-  if (Leds < 1 || Leds > 8) begin : gen_bad_leds
-    $error("ecp5_top: Leds must be 1 to 8");
-  end
-  if (Highs < 1) begin : gen_bad_highs
-    $error("ecp5_top: Highs must be 1 or more");
-  end
+  if (Leds < 1 || Leds > 8) $error("ecp5_top: Leds must be 1 to 8");
+  if (Highs < 1) $error("ecp5_top: Highs must be 1 or more");
 
   logic bit_clk, pixel_clk, system_clk, unused_chip_clk, locked;
 

@@ -22,18 +22,18 @@ module ecp5_top_sdram #(
   parameter int unsigned PowerOnUs       = 200,
   parameter int unsigned GapBits         = 22,
   parameter bit          ButtonsLow      = 1'b0,
-  parameter int unsigned Leds            = 8,   // 1 .. 8.
-  parameter int unsigned Highs           = 1,   // Pins that are always 1: 1 or more.
+  parameter int unsigned Leds            = 8,     // 1 .. 8.
+  parameter int unsigned Highs           = 1,     // Pins that are always 1: 1 or more.
   parameter string       OctreeFile      = "",
   parameter string       TableFile       = ""
 ) (
   input  logic             clk,
   input  logic             uart_rx,
   output logic             uart_tx,
-  input  logic [      2:0] buttons,  // Pause, reverse, step.
+  input  logic [      2:0] buttons,     // Pause, reverse, step.
   output logic [ Leds-1:0] leds,
-  output logic [Highs-1:0] high,     // Always 1.
-  output logic [      3:0] dvi,      // Blue, green, red, clock.
+  output logic [Highs-1:0] high,        // Always 1.
+  output logic [      3:0] dvi,         // Blue, green, red, clock.
   output logic             sdram_clk,
   output logic             sdram_cke,
   output logic             sdram_csn,
@@ -45,12 +45,8 @@ module ecp5_top_sdram #(
   output logic [      1:0] sdram_dqm,
   inout  wire  [     15:0] sdram_d
 );
-  if (Leds < 1 || Leds > 8) begin : gen_bad_leds
-    $error("ecp5_top_sdram: Leds must be 1 to 8");
-  end
-  if (Highs < 1) begin : gen_bad_highs
-    $error("ecp5_top_sdram: Highs must be 1 or more");
-  end
+  if (Leds < 1 || Leds > 8) $error("ecp5_top_sdram: Leds must be 1 to 8");
+  if (Highs < 1) $error("ecp5_top_sdram: Highs must be 1 or more");
 
   logic bit_clk, pixel_clk, system_clk, chip_clk, locked;
 
@@ -85,9 +81,9 @@ module ecp5_top_sdram #(
   logic [2:0][9:0] words;
   logic [7:0] all_leds;
 
-  // As board_sdram_pins has them.
-  logic        cke, cs_n, ras_n, cas_n, we_n, dq_oe;
-  logic [ 1:0] ba, dqm;
+  // See board_sdram_pins.
+  logic cke, cs_n, ras_n, cas_n, we_n, dq_oe;
+  logic [1:0] ba, dqm;
   logic [12:0] a;
   logic [15:0] dq_out, dq_in;
 

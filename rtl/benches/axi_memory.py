@@ -16,7 +16,7 @@ class AxiMemory:
         self.ports, self.chance, self.base = ports, chance, base
         self.words = []
         self.latency, self.jitter, self.stalls = 5, 0, 0.0
-        self.response = OKAY  # The response of lines whose address comes from now on
+        self.response = OKAY  # The response to lines whose address comes from now on.
         self.silent = False
         self.now = 0
         self.lines = [deque() for _ in ports]

@@ -18,17 +18,7 @@ from oracles.ray import FACE_NONE, shade
 from oracles.shading import Shader, shaded_pixel
 from rays import ray_of, some_direction
 from streams import PACES, drive, pace, reset, start
-from structs import (
-    HIT_POINT,
-    LIGHT_PLANES,
-    MATERIAL_WRITE,
-    RAY,
-    RESULT,
-    ROW_FREE,
-    SHADING,
-    WEIGHTS_WRITE,
-    WORLD,
-)
+from structs import HIT_POINT, LIGHT_PLANES, MATERIAL_WRITE, RAY, RESULT, ROW_FREE, SHADING, WEIGHTS_WRITE, WORLD
 
 LEAF, DEPTH, ROWS = 1 << 9, 3, 32
 SIDE = 1 << DEPTH

@@ -21,11 +21,7 @@ def frame(width, height):
     """Make the packer's input and the bytes that shall come, line by line."""
     colours = [[random.randbytes(3) for _ in range(width)] for _ in range(height)]
     items = [
-        {
-            "colour_i": int.from_bytes(colour, "big"),
-            "first_i": row == column == 0,
-            "line_end_i": column == width - 1,
-        }
+        {"colour_i": int.from_bytes(colour, "big"), "first_i": row == column == 0, "line_end_i": column == width - 1}
         for row, line in enumerate(colours)
         for column, colour in enumerate(line)
     ]

@@ -33,7 +33,7 @@ async def ready_within_a_clock(dut):
     """Change ready_i between clock edges: ready_o follows, or with CutsReady it does not."""
     await start(dut, valid_i=0, ready_i=0)
     cuts = int(dut.CutsReady.value)
-    # With 0, 1 and 2 bytes in it: ready_o with ready_i low, and high.
+    # ready_o with ready_i low, and high, while 0, 1 and 2 bytes are in it.
     for expected in [(1, 1), (1, 1), (0, 0)] if cuts else [(1, 1), (0, 1)]:
         await FallingEdge(dut.clk_i)
         seen = []

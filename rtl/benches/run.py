@@ -28,7 +28,9 @@ BUILDS_FOLDER = RTL.parent / "build" / "benches"
 VERSION = "verilator.txt"  # Verilator's version, beside what it made.
 CONFIGURATIONS = {name: configuration.parameters for name, configuration in read_configurations().items()}
 CORE = TOP
-SEED = 1  # All that is random starts here: what fails, fails again.
+SEED = 1  # All that is random starts from it: what fails, fails again.
+ARGUMENTS = ["-O3", "--assert", "--x-assign", "unique", "--x-initial", "unique", "--coverage-line", "-CFLAGS", "-O0"]
+SMALL = {"MaxDepth": 6, "PositionBits": 13, "BlockBits": 8}
 
 
 class Build(NamedTuple):
@@ -46,37 +48,11 @@ class Build(NamedTuple):
 BUILDS = {
     "lit": Build(CORE, CONFIGURATIONS["lit"], ("bench_core", "bench_registers", "bench_waveforms")),
     "octo-narrow": Build(CORE, CONFIGURATIONS["octo"], ("bench_core",), narrow=True, repeats=True),
-    "banked-light": Build(
-        CORE,
-        {"Lanes": 5, "MaxDepth": 6, "PositionBits": 13, "BlockBits": 8, "MemoryForm": 1, "Light": 1},
-        ("bench_core",),
-        repeats=True,
-    ),
-    "mirrors": Build(
-        CORE,
-        {"Lanes": 2, "MaxDepth": 6, "PositionBits": 13, "BlockBits": 8, "Mirrors": 1},
-        ("bench_core",),
-        repeats=True,
-    ),
-    "micro": Build(
-        CORE,
-        {"Lanes": 1, "MaxDepth": 6, "PositionBits": 13, "BlockBits": 8, "RayClocks": 4},
-        ("bench_core",),
-        narrow=True,
-        repeats=True,
-    ),
-    "micro-many": Build(
-        CORE,
-        {"Lanes": 5, "MaxDepth": 6, "PositionBits": 13, "BlockBits": 8, "RayClocks": 4},
-        ("bench_core",),
-        narrow=True,
-        repeats=True,
-    ),
-    "lod": Build(
-        CORE,
-        {"Lanes": 2, "MaxDepth": 6, "PositionBits": 13, "BlockBits": 8, "Lod": 1},
-        ("bench_lod",),
-    ),
+    "banked-light": Build(CORE, SMALL | {"Lanes": 5, "MemoryForm": 1, "Light": 1}, ("bench_core",), repeats=True),
+    "mirrors": Build(CORE, SMALL | {"Lanes": 2, "Mirrors": 1}, ("bench_core",), repeats=True),
+    "micro": Build(CORE, SMALL | {"Lanes": 1, "RayClocks": 4}, ("bench_core",), narrow=True, repeats=True),
+    "micro-many": Build(CORE, SMALL | {"Lanes": 5, "RayClocks": 4}, ("bench_core",), narrow=True, repeats=True),
+    "lod": Build(CORE, SMALL | {"Lanes": 2, "Lod": 1}, ("bench_lod",)),
     "fifo": Build("voxrt_fifo", {}, ("bench_fifo",)),
     "stream_register": Build("voxrt_stream_register", {}, ("bench_stream_register",)),
     "stream_register-cut": Build("voxrt_stream_register", {"CutsReady": 1}, ("bench_stream_register",)),
@@ -90,9 +66,7 @@ BUILDS = {
     "ray_generator-ahead": Build("voxrt_ray_generator", {"Ahead": 1}, ("bench_ray_generator",)),
     "ray_setup": Build("voxrt_ray_setup", {"MaxDepth": 6, "Lanes": 5, "Light": 1}, ("bench_ray_setup",)),
     "ray_setup-shared": Build(
-        "voxrt_ray_setup",
-        {"MaxDepth": 6, "Lanes": 3, "Light": 1, "RayClocks": 4},
-        ("bench_ray_setup",),
+        "voxrt_ray_setup", {"MaxDepth": 6, "Lanes": 3, "Light": 1, "RayClocks": 4}, ("bench_ray_setup",)
     ),
     "divide": Build("voxrt_divide", {}, ("bench_divide",)),
     "shader": Build("voxrt_shader", {}, ("bench_shader",)),
@@ -139,28 +113,11 @@ BUILDS = {
         ("bench_cached_memory",),
     ),
     "cached": Build(
-        CORE,
-        {
-            "Lanes": 3,
-            "MaxDepth": 6,
-            "PositionBits": 13,
-            "BlockBits": 8,
-            "MemoryForm": 2,
-            "L1SetBits": 1,
-            "L2SetBits": 1,
-        },
-        ("bench_cached_core",),
+        CORE, SMALL | {"Lanes": 3, "MemoryForm": 2, "L1SetBits": 1, "L2SetBits": 1}, ("bench_cached_core",)
     ),
     "zynq_cached": Build(
         "voxrt_zynq_cached",
-        {
-            "Lanes": 2,
-            "MaxDepth": 6,
-            "PositionBits": 13,
-            "BlockBits": 8,
-            "L1SetBits": 1,
-            "L2SetBits": 1,
-        },
+        SMALL | {"Lanes": 2, "L1SetBits": 1, "L2SetBits": 1},
         ("bench_cached_core",),
         repeats=True,
         wrapper=(RTL / "vivado" / "voxrt_zynq_cached.v",),
@@ -185,20 +142,11 @@ def run(name: str) -> None:
     runner = get_runner("verilator")
     runner.build(
         sources=[*sources, *build.coverage, *build.wrapper],
+        includes=[RTL],
         hdl_toplevel=build.top,
         parameters=build.parameters,
         defines={"VOXRT_NARROW_MULTIPLIERS": 1} if build.narrow else {},
-        build_args=[
-            "-O3",
-            "--assert",
-            "--x-assign",
-            "unique",
-            "--x-initial",
-            "unique",
-            "--coverage-line",
-            "-CFLAGS",
-            "-O0",
-        ],
+        build_args=ARGUMENTS,
         build_dir=folder,
     )
     (folder / VERSION).write_text(version("verilator"))

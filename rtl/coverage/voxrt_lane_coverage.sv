@@ -10,58 +10,58 @@ module voxrt_lane_coverage
   parameter int unsigned MaxDepth = 10,
   parameter int unsigned KeyBits  = 55
 ) (
-  input logic                clk_i,
-  input logic                active_i,
-  input logic                retry_i,         // No word came.
-  input logic                descend_i,       // Into a pointer's block.
-  input logic                leave_i,         // An empty leaf.
-  input logic                finish_i,        // Material, or an error.
-  input logic [MaxDepth-1:0] size_i,          // Of the cell, one-hot.
-  input logic [MaxDepth-1:0] coordinate_i,    // Of its corner, on the axis of the exit.
-  input face_e               exit_i,
-  input face_e               key_face_i,      // The plane that the ray crossed last.
-  input material_t           material_i,
-  input logic [         2:0] mirrored_i,
-  input logic [         2:0] dead_i,
-  input logic [         2:0] child_i,         // Of a pointer, in the mirrored frame.
-  input logic [ KeyBits-1:0] time_i      [3],
-  input logic [  MaxDepth:0] side_i,          // Of the world, one-hot.
-  input logic                bad_pointer_i,
-  input logic                step_limit_i
+  input logic                     clk_i,
+  input logic                     active_i,
+  input logic                     retry_i,           // No word came.
+  input logic                     descend_i,         // Into a pointer's block.
+  input logic                     leave_i,           // An empty leaf.
+  input logic                     finish_i,          // Material, or an error.
+  input logic      [MaxDepth-1:0] size_i,            // Size of the cell, one-hot.
+  input logic      [MaxDepth-1:0] coordinate_i,      // Coordinate of its corner on the axis of the exit.
+  input face_e                    exit_i,
+  input face_e                    key_face_i,        // The plane that the ray crossed last.
+  input material_t                material_i,
+  input logic      [         2:0] mirrored_i,
+  input logic      [         2:0] dead_i,
+  input logic      [         2:0] child_i,           // A pointer's child, in the mirrored frame.
+  input logic      [ KeyBits-1:0] time_i       [3],
+  input logic      [  MaxDepth:0] side_i,            // Side of the world, one-hot.
+  input logic                     bad_pointer_i,
+  input logic                     step_limit_i
 );
   localparam int unsigned Levels = 16;
 
-  logic              leaves, outside, hits, descends;
+  logic leaves, outside, hits, descends;
   logic [MaxDepth:0] sum, ancestor;  // Ancestor: the size of the cell that follows, one-hot.
-  logic [       2:0] ties;
-  logic [       3:0] level, climbed;
+  logic [2:0] ties;
+  logic [3:0] level, climbed;
 
   function automatic logic [4:0] level_of(logic [MaxDepth:0] size);
     level_of = '0;
     for (int unsigned i = 0; i <= MaxDepth; i++) if (size[i]) level_of |= 5'(i);
   endfunction
 
-  assign sum      = {1'b0, coordinate_i} + {1'b0, size_i};
+  assign sum = {1'b0, coordinate_i} + {1'b0, size_i};
   assign ancestor = sum & ~{1'b0, coordinate_i};
-  assign outside  = (sum & side_i) != '0;
-  assign level    = 4'(level_of({1'b0, size_i}));
-  assign climbed  = 4'(level_of(ancestor) - level_of({1'b0, size_i}));
-  assign leaves   = active_i && leave_i && dead_i != '1;
-  assign hits     = active_i && finish_i && material_i != '0;
+  assign outside = (sum & side_i) != '0;
+  assign level = 4'(level_of({1'b0, size_i}));
+  assign climbed = 4'(level_of(ancestor) - level_of({1'b0, size_i}));
+  assign leaves = active_i && leave_i && dead_i != '1;
+  assign hits = active_i && finish_i && material_i != '0;
   assign descends = active_i && descend_i;
 
   // Planes that are crossed at the same time: z and x, y and z, x and y.
   assign ties = {time_i[2] == time_i[0] && !dead_i[2] && !dead_i[0], time_i[1] == time_i[2] && !dead_i[1] && !dead_i[2],
                  time_i[0] == time_i[1] && !dead_i[0] && !dead_i[1]};
 
-  int unsigned leaf_q    [Levels][3][8][Levels];  // By level, exit, mirrored axes, levels climbed.
-  int unsigned leaf_out_q[Levels][3][8];          // Out of the world.
-  int unsigned solid_q   [Levels][4][8];          // By level, face, mirrored axes.
-  int unsigned pointer_q [Levels][8][8];          // By level, child, mirrored axes.
-  int unsigned dead_q    [8][3];                  // By dead axes, exit.
-  int unsigned tie_q     [8][3];                  // By ties, exit.
-  int unsigned depth_q   [Levels+1];              // Out of worlds of a depth.
-  int unsigned word_q    [3];                     // Not delivered, bad pointer, step limit.
+  int unsigned leaf_q[Levels][3][8][Levels];  // By level, exit, mirrored axes, levels climbed.
+  int unsigned leaf_out_q[Levels][3][8];  // Out of the world.
+  int unsigned solid_q[Levels][4][8];  // By level, face, mirrored axes.
+  int unsigned pointer_q[Levels][8][8];  // By level, child, mirrored axes.
+  int unsigned dead_q[8][3];  // By dead axes, exit.
+  int unsigned tie_q[8][3];  // By ties, exit.
+  int unsigned depth_q[Levels+1];  // Out of worlds of a depth.
+  int unsigned word_q[3];  // Not delivered, bad pointer, step limit.
 
   always_ff @(posedge clk_i) begin
     if (leaves && !outside) begin

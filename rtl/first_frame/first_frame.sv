@@ -25,7 +25,7 @@ module first_frame #(
 );
   localparam logic [10:0] Status = 11'h010;
   localparam logic [10:0] Size = 11'h014;
-  localparam int MemoryBit = 23;  // of an address: octree memory
+  localparam int MemoryBit = 23;  // It is set in addresses of the octree memory.
 
   logic clk, rst_n;
   logic awvalid, wvalid, arvalid, bram_en;

@@ -13,7 +13,9 @@ import tempfile
 from pathlib import Path
 
 FORMAL = Path(__file__).resolve().parent
-RTL = FORMAL.parent
+sys.path.insert(1, str(FORMAL.parent))
+from configurations import HEADER, list_sources  # noqa: E402 - found by the line above
+
 BIN = Path(sys.executable).parent
 
 PROOFS = {
@@ -27,10 +29,7 @@ PROOFS = {
 }
 
 # What a module is made of.
-PARTS = {
-    "voxrt_pixel_buffer": ("voxrt_fifo",),
-    "voxrt_l1_cache": ("voxrt_fifo", "voxrt_block_ram", "voxrt_line_queue"),
-}
+PARTS = {"voxrt_pixel_buffer": ("voxrt_fifo",), "voxrt_l1_cache": ("voxrt_fifo", "voxrt_block_ram", "voxrt_line_queue")}
 
 # Their memories are so small that the solver is faster with registers.
 SMALL_MEMORIES = {"voxrt_axi_read_master", "voxrt_miss_list", "voxrt_l1_cache"}
@@ -52,11 +51,8 @@ prep -top {name}_properties -flatten
 
 def run(name: str, mode: str, depth: int) -> bool:
     """Run one job and tell whether it holds."""
-    generated = RTL / "generated"
-    own = [RTL / f"{part}.sv" for part in (name, *PARTS.get(name, ()))]
-    own = [RTL / "voxrt_pkg.sv", *own, generated / f"{name}_pkg.sv", generated / f"{name}.sv"]
-    files = [path for path in own if path.exists()]
-    files.append(FORMAL / f"{name}_properties.sv")
+    parts = {"voxrt_pkg", name, f"{name}_pkg", *PARTS.get(name, ())}
+    files = [path for path in list_sources() if path.stem in parts] + [FORMAL / f"{name}_properties.sv"]
     sources = " ".join(path.name for path in files)
     job = JOB.format(
         mode=mode,
@@ -64,7 +60,7 @@ def run(name: str, mode: str, depth: int) -> bool:
         name=name,
         sources=sources,
         memories="memory_map" if name in SMALL_MEMORIES else "",
-        files="\n".join(map(str, files)),
+        files="\n".join(map(str, [HEADER, *files])),
     )
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "job.sby").write_text(job)

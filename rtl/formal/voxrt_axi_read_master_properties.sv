@@ -19,9 +19,9 @@ module voxrt_axi_read_master_properties
   input logic        rvalid_i,
   input logic [ 1:0] rresp_i
 );
-  logic               request_ready_o, answer_valid_o, answer_failed_o, bus_error_o, bus_timeout_o;
-  logic       [255:0] answer_line_o;
-  axi_read_request_t  axi_o;
+  logic request_ready_o, answer_valid_o, answer_failed_o, bus_error_o, bus_timeout_o;
+  logic [255:0] answer_line_o;
+  axi_read_request_t axi_o;
   axi_read_response_t axi_i;
 
   voxrt_axi_read_master #(
@@ -48,13 +48,16 @@ module voxrt_axi_read_master_properties
 
   logic started_q = 1'b0;
   always_ff @(posedge clk_i) started_q <= 1'b1;
-  always_comb if (started_q) assume (rst_ni); else assume (!rst_ni);
+  always_comb
+    if (started_q)
+      assume (rst_ni);
+      else assume (!rst_ni);
 
   // The slave: addresses that it took, of which it gives the oldest; a beat's data is its address.
   logic [31:0] held_q[2*UnderWay];
-  logic [ 2:0] count_q;
-  logic [ 1:0] beat_q;
-  logic        takes, gives;
+  logic [2:0] count_q;
+  logic [1:0] beat_q;
+  logic takes, gives;
 
   assign takes = axi_o.arvalid && arready_i;
   assign gives = rvalid_i && axi_o.rready;
@@ -72,7 +75,7 @@ module voxrt_axi_read_master_properties
   always_ff @(posedge clk_i) begin
     if (gives) beat_q <= beat_q + 1'b1;
     if (gives && beat_q == 2'd3) for (int unsigned i = 1; i < 2 * UnderWay; i++) held_q[i-1] <= held_q[i];
-    if (takes) held_q[count_q-3'(gives && beat_q == 2'd3)] <= axi_o.araddr;
+    if (takes) held_q[count_q-3'(gives&&beat_q==2'd3)] <= axi_o.araddr;
     count_q <= count_q + 3'(takes) - 3'(gives && beat_q == 2'd3);
     if (!rst_ni) begin
       count_q <= '0;
@@ -82,15 +85,15 @@ module voxrt_axi_read_master_properties
 
   // Requests to be answered.
   logic [31:0] owed_q[2];
-  logic [ 1:0] owed_count_q;
-  logic        asks, answers;
+  logic [1:0] owed_count_q;
+  logic asks, answers;
 
   assign asks    = request_valid_i && request_ready_o && !clear_i;
   assign answers = answer_valid_o && answer_ready_i;
 
   always_ff @(posedge clk_i) begin
     if (answers) owed_q[0] <= owed_q[1];
-    if (asks) owed_q[1'(owed_count_q - 2'(answers))] <= request_address_i;
+    if (asks) owed_q[1'(owed_count_q-2'(answers))] <= request_address_i;
     owed_count_q <= clear_i ? '0 : owed_count_q + 2'(asks) - 2'(answers);
     if (!rst_ni) owed_count_q <= '0;
   end
@@ -109,7 +112,7 @@ module voxrt_axi_read_master_properties
   end
 
   // AXI: what is offered stays.
-  logic        offered_q;
+  logic offered_q;
   logic [31:0] address_q;
 
   always_ff @(posedge clk_i) begin

@@ -9,11 +9,11 @@ module voxrt_fifo_properties #(
   input logic             valid_i,
   input logic [Width-1:0] data_i,
   input logic             ready_i,
-  input logic             follow   // The solver's choice.
+  input logic             follow    // The solver's choice.
 );
   localparam int unsigned IndexBits = $clog2(Depth);
 
-  logic             ready_o, valid_o;
+  logic ready_o, valid_o;
   logic [Width-1:0] data_o;
 
   voxrt_fifo #(
@@ -36,7 +36,7 @@ module voxrt_fifo_properties #(
 
   // How many are inside.
   logic [IndexBits:0] count_q;
-  logic               pushes, pops;
+  logic pushes, pops;
 
   assign pushes = valid_i && ready_o;
   assign pops   = valid_o && ready_i;
@@ -47,10 +47,10 @@ module voxrt_fifo_properties #(
   end
 
   // The value followed: pushed at a time that the solver chooses; ahead_q others leave before it.
-  logic               inside_q;
+  logic inside_q;
   logic [IndexBits:0] ahead_q;
-  logic [Width-1:0]   value_q;
-  logic               follows;
+  logic [Width-1:0] value_q;
+  logic follows;
 
   assign follows = pushes && follow && !inside_q;
 

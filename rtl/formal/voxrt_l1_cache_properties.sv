@@ -12,14 +12,14 @@ module voxrt_l1_cache_properties
   parameter int unsigned MemoryClocks = 2,
   parameter int unsigned Patience     = 22
 ) (
-  input logic                                  clk_i,
-  input logic                                  rst_ni,
-  input logic                                  start_i,         // A ray reads.
-  input logic                  [BlockBits+3:0] address_i,       // What it reads next.
-  input logic                                  request_ready_i,
-  input logic                                  answer_i,
-  input logic                    [SetBits-1:0] answer_set_i,
-  input logic [7:0][payload_bits(BlockBits, 1'b0):0] answer_words_i
+  input logic                                                  clk_i,
+  input logic                                                  rst_ni,
+  input logic                                                  start_i,          // A ray reads.
+  input logic [BlockBits+3:0]                                  address_i,        // What it reads next.
+  input logic                                                  request_ready_i,
+  input logic                                                  answer_i,
+  input logic [  SetBits-1:0]                                  answer_set_i,
+  input logic [          7:0][payload_bits(BlockBits, 1'b0):0] answer_words_i
 );
   localparam int unsigned LineBits = BlockBits + 1;
   localparam int unsigned Rays = 3;
@@ -27,14 +27,14 @@ module voxrt_l1_cache_properties
   localparam int unsigned Clocks = 5;
   localparam int unsigned TurnClocks = 6;
 
-  logic                        idle_o, read, ack_o, request_valid_o;
-  logic      [BlockBits+3:0]   address;
-  logic      [LineBits-1:0]    request_line_o;
+  logic idle_o, read, ack_o, request_valid_o;
+  logic [BlockBits+3:0] address;
+  logic [LineBits-1:0] request_line_o;
   logic [payload_bits(BlockBits, 1'b0):0] word_o;
 
-  logic               [SetBits-1:0] fill_set;
-  logic                             fill_valid;
-  logic                       [1:0] fill_quarter;
+  logic [SetBits-1:0] fill_set;
+  logic fill_valid;
+  logic [1:0] fill_quarter;
   logic [1:0][payload_bits(BlockBits, 1'b0):0] fill_pair;
 
   voxrt_line_queue #(
@@ -62,10 +62,10 @@ module voxrt_l1_cache_properties
   ) dut (
     .clk_i,
     .rst_ni,
-    .clear_i        (1'b0),
+    .clear_i         (1'b0),
     .idle_o,
-    .read_i         (read),
-    .address_i      (address),
+    .read_i          (read),
+    .address_i       (address),
     .ack_o,
     .word_o,
     .request_valid_o,
@@ -79,16 +79,19 @@ module voxrt_l1_cache_properties
 
   logic started_q = 1'b0;
   always_ff @(posedge clk_i) started_q <= 1'b1;
-  always_comb if (started_q) assume (rst_ni); else assume (!rst_ni);
+  always_comb
+    if (started_q)
+      assume (rst_ni);
+      else assume (!rst_ni);
 
   // Rays come to the port in turn, once the cache is ready. The answer to a read comes Clocks clocks later, so a turn is
   // longer: TurnClocks is 3 x 2 clocks.
-  logic [2:0]           turn_q;
-  logic [Rays-1:0]      reads_q;
+  logic [2:0] turn_q;
+  logic [Rays-1:0] reads_q;
   logic [BlockBits+3:0] wanted_q[Rays];
-  logic [Clocks-1:0]    asked_q;
-  logic [1:0]           ray, ray_q[Clocks];
-  logic                 slot, ready_q;
+  logic [Clocks-1:0] asked_q;
+  logic [1:0] ray, ray_q[Clocks];
+  logic slot, ready_q;
 
   assign slot    = !turn_q[0] && (ready_q || idle_o);
   assign ray     = turn_q[2:1];
@@ -114,7 +117,7 @@ module voxrt_l1_cache_properties
   end
 
   // The memory: a word of it, which is followed; all other words may be anything else.
-  logic [BlockBits+3:0]             target;
+  logic [BlockBits+3:0] target;
   logic [payload_bits(BlockBits, 1'b0):0] target_word;
   always_ff @(posedge clk_i) begin
     target      <= target;
@@ -122,10 +125,10 @@ module voxrt_l1_cache_properties
   end
 
   // Lines that were taken and not answered, by set, and for how long.
-  logic [Sets-1:0]     taken_q;
+  logic [Sets-1:0] taken_q;
   logic [LineBits-1:0] line_q[Sets];
-  logic [2:0]          age_q [Sets];
-  logic [SetBits-1:0]  request_set;
+  logic [2:0] age_q[Sets];
+  logic [SetBits-1:0] request_set;
 
   assign request_set = request_line_o[SetBits-1:0];
 
@@ -149,8 +152,9 @@ module voxrt_l1_cache_properties
     if (answer_i) begin
       assume (taken_q[answer_set_i]);
       for (int unsigned o = 0; o < 8; o++) begin
-        if ({line_q[answer_set_i], 3'(o)} == target) assume (answer_words_i[o] == target_word);
-        else assume (answer_words_i[o] != target_word);
+        if ({line_q[answer_set_i], 3'(o)} == target)
+          assume (answer_words_i[o] == target_word);
+          else assume (answer_words_i[o] != target_word);
       end
     end
   end

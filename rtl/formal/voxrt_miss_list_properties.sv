@@ -13,14 +13,14 @@ module voxrt_miss_list_properties #(
   input logic                fetch_ready_i,
   input logic                come_i
 );
-  logic                empty_o, fetch_valid_o;
-  logic [         1:0] accepted_o, come_way_o;
+  logic empty_o, fetch_valid_o;
+  logic [1:0] accepted_o, come_way_o;
   logic [LineBits-1:0] fetch_line_o, come_line_o, next_line[2], line[2];
-  logic [         0:0] lanes[2], free_lanes_o[2];
-  logic [         1:0] way[2];
+  logic [0:0] lanes[2], free_lanes_o[2];
+  logic [1:0] way[2];
 
   // A line is freed two clocks after it comes.
-  logic [         3:1] come_q;
+  logic [3:1] come_q;
   logic [LineBits-1:0] come_line_q[1:3];
 
   assign next_line = '{next_line0_i, next_line1_i};
@@ -39,10 +39,10 @@ module voxrt_miss_list_properties #(
     .rst_ni,
     .empty_o,
     .miss_i,
-    .next_line_i  (next_line),
-    .line_i       (line),
-    .lanes_i      (lanes),
-    .way_i        (way),
+    .next_line_i(next_line),
+    .line_i     (line),
+    .lanes_i    (lanes),
+    .way_i      (way),
     .accepted_o,
     .fetch_valid_o,
     .fetch_ready_i,
@@ -50,7 +50,7 @@ module voxrt_miss_list_properties #(
     .come_i,
     .come_line_o,
     .come_way_o,
-    .free_i       (come_q[2]),
+    .free_i     (come_q[2]),
     .free_lanes_o
   );
 
@@ -82,7 +82,7 @@ module voxrt_miss_list_properties #(
   logic [LineBits-1:0] target;
   always_ff @(posedge clk_i) target <= target;
   logic [1:0] waits_q, gets;
-  logic       on_way_q;
+  logic on_way_q;
 
   always_comb begin
     for (int unsigned p = 0; p < 2; p++) begin

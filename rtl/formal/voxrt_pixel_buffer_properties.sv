@@ -5,21 +5,21 @@ module voxrt_pixel_buffer_properties #(
   parameter int unsigned Width = 3,
   parameter int unsigned Depth = 4
 ) (
-  input logic               clk_i,
-  input logic               rst_ni,
-  input logic               allocate_i,
-  input logic               complete_i,
+  input logic                   clk_i,
+  input logic                   rst_ni,
+  input logic                   allocate_i,
+  input logic                   complete_i,
   input logic [$clog2(Depth):0] tag_i,
-  input logic               lit_i,
-  input logic               store_i,
-  input logic [  Width-1:0] pixel_i,
-  input logic               ready_i
+  input logic                   lit_i,
+  input logic                   store_i,
+  input logic [      Width-1:0] pixel_i,
+  input logic                   ready_i
 );
   localparam int unsigned TagBits = $clog2(Depth) + 1;
 
-  logic               ready_o, valid_o, lit_o;
+  logic ready_o, valid_o, lit_o;
   logic [TagBits-1:0] tag_o;
-  logic [  Width-1:0] pixel_o;
+  logic [Width-1:0] pixel_o;
 
   voxrt_pixel_buffer #(
     .Width        (Width),
@@ -67,10 +67,10 @@ module voxrt_pixel_buffer_properties #(
   logic [CountBits-1:0] target;
   always_ff @(posedge clk_i) target <= target;
   logic [CountBits-1:0] allocated_q, read_q;
-  logic                 completed_q, stored_q, lit_q;
-  logic [  TagBits-1:0] tag_q;
-  logic [    Width-1:0] pixel_q;
-  logic                 is_target, completes_now;
+  logic completed_q, stored_q, lit_q;
+  logic [TagBits-1:0] tag_q;
+  logic [Width-1:0] pixel_q;
+  logic is_target, completes_now;
 
   assign is_target = !completed_q &&
       (allocated_q > target ? tag_i == tag_q : allocated_q == target && allocate_i && tag_i == tag_o);
@@ -84,7 +84,7 @@ module voxrt_pixel_buffer_properties #(
     if (allocate_i && allocated_q == target) tag_q <= tag_o;
     if (completes_now) begin
       completed_q <= 1'b1;
-      lit_q    <= lit_i;
+      lit_q       <= lit_i;
     end
     if (store_i && is_target) begin
       stored_q <= 1'b1;
@@ -92,10 +92,10 @@ module voxrt_pixel_buffer_properties #(
     end
     if (valid_o && ready_i) read_q <= read_q + 1'b1;
     if (!rst_ni) begin
-      allocated_q  <= '0;
-      read_q  <= '0;
+      allocated_q <= '0;
+      read_q      <= '0;
       completed_q <= 1'b0;
-      stored_q <= 1'b0;
+      stored_q    <= 1'b0;
     end
   end
 

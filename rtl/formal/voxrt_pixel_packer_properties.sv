@@ -11,9 +11,9 @@ module voxrt_pixel_packer_properties
   input logic    line_end_i,
   input logic    tready
 );
-  logic        ready_o, tvalid, tuser, tlast;
+  logic ready_o, tvalid, tuser, tlast;
   logic [31:0] tdata;
-  logic [ 3:0] tkeep;
+  logic [3:0] tkeep;
 
   voxrt_pixel_packer dut (
     .clk_i,
@@ -37,7 +37,7 @@ module voxrt_pixel_packer_properties
 
   logic reset_q, tvalid_q, tready_q, tuser_q, tlast_q;
   logic [31:0] tdata_q;
-  logic [ 3:0] tkeep_q;
+  logic [3:0] tkeep_q;
 
   always_ff @(posedge clk_i) begin
     reset_q  <= !rst_ni;
@@ -61,15 +61,15 @@ module voxrt_pixel_packer_properties
   localparam int unsigned CountBits = 5;
   // Registers that start with any value and keep it: what holds holds for all.
   logic [CountBits-1:0] target;  // Number of a byte in a line.
-  logic [CountBits-1:0] line;    // Number of a line.
+  logic [CountBits-1:0] line;  // Number of a line.
   always_ff @(posedge clk_i) begin
     target <= target;
     line   <= line;
   end
   logic [CountBits-1:0] in_byte_q, in_line_q, out_byte_q, out_line_q, length_q;
-  logic [7:0]           byte_q;
-  logic                 seen_q, ended_q, first_q;
-  logic [2:0]           out_bytes;
+  logic [7:0] byte_q;
+  logic seen_q, ended_q, first_q;
+  logic [2:0] out_bytes;
   logic [CountBits-1:0] offset;
 
   assign out_bytes = 3'(tkeep[0]) + 3'(tkeep[1]) + 3'(tkeep[2]) + 3'(tkeep[3]);
@@ -122,8 +122,9 @@ module voxrt_pixel_packer_properties
           assert (seen_q);
           assert (8'(tdata >> (8 * 2'(target - out_byte_q))) == byte_q);
         end
-        if (tlast) assert (ended_q && length_q == out_byte_q + CountBits'(out_bytes));
-        else if (ended_q) assert (out_byte_q + CountBits'(out_bytes) < length_q);
+        if (tlast)
+          assert (ended_q && length_q == out_byte_q + CountBits'(out_bytes));
+          else if (ended_q) assert (out_byte_q + CountBits'(out_bytes) < length_q);
       end
     end
   end

@@ -16,17 +16,17 @@ module voxrt_registers_properties
   input logic        arvalid,
   input logic [10:0] araddr,
   input logic        rready,
-  input logic [31:0] status_bits, // What the core says, free.
+  input logic [31:0] status_bits,  // What the core says, free.
   input logic [31:0] table_word
 );
   // Address of `up`, component x.
   localparam logic [10:0] Storage = 11'h050;
 
   logic awready, wready, bvalid, arready, rvalid;
-  logic [ 1:0] bresp, rresp;
+  logic [1:0] bresp, rresp;
   logic [31:0] rdata;
 
-  voxrt_registers__in_t  hwif_in;
+  voxrt_registers__in_t hwif_in;
   voxrt_registers__out_t hwif_out;
 
   logic table_reads_q, table_writes_q;
@@ -36,24 +36,24 @@ module voxrt_registers_properties
   end
 
   always_comb begin
-    hwif_in.configuration.lanes.next          = status_bits[7:0];
-    hwif_in.configuration.max_depth.next      = status_bits[12:8];
-    hwif_in.configuration.position_bits.next  = status_bits[18:13];
-    hwif_in.configuration.block_bits.next     = status_bits[23:19];
-    hwif_in.configuration.banked.next         = status_bits[24];
-    hwif_in.status.busy.next                  = status_bits[25];
-    hwif_in.status.frame_done.hwset           = status_bits[26];
-    hwif_in.status.direction_overflow.hwset   = status_bits[27];
-    hwif_in.status.bad_pointer.hwset          = status_bits[28];
-    hwif_in.status.step_limit.hwset           = status_bits[29];
-    hwif_in.cycles.value.next                 = table_word;
-    hwif_in.rays.value.next                   = table_word;
-    hwif_in.words_read.value.next             = table_word;
-    hwif_in.hits.value.next                   = table_word;
-    hwif_in.stalls.value.next                 = table_word;
-    hwif_in.materials.rd_ack                  = table_reads_q;
-    hwif_in.materials.rd_data                 = table_word;
-    hwif_in.materials.wr_ack                  = table_writes_q;
+    hwif_in.configuration.lanes.next         = status_bits[7:0];
+    hwif_in.configuration.max_depth.next     = status_bits[12:8];
+    hwif_in.configuration.position_bits.next = status_bits[18:13];
+    hwif_in.configuration.block_bits.next    = status_bits[23:19];
+    hwif_in.configuration.banked.next        = status_bits[24];
+    hwif_in.status.busy.next                 = status_bits[25];
+    hwif_in.status.frame_done.hwset          = status_bits[26];
+    hwif_in.status.direction_overflow.hwset  = status_bits[27];
+    hwif_in.status.bad_pointer.hwset         = status_bits[28];
+    hwif_in.status.step_limit.hwset          = status_bits[29];
+    hwif_in.cycles.value.next                = table_word;
+    hwif_in.rays.value.next                  = table_word;
+    hwif_in.words_read.value.next            = table_word;
+    hwif_in.hits.value.next                  = table_word;
+    hwif_in.stalls.value.next                = table_word;
+    hwif_in.materials.rd_ack                 = table_reads_q;
+    hwif_in.materials.rd_data                = table_word;
+    hwif_in.materials.wr_ack                 = table_writes_q;
   end
 
   voxrt_registers dut (
@@ -91,14 +91,14 @@ module voxrt_registers_properties
   logic awvalid_q, awready_q, wvalid_q, wready_q, arvalid_q, arready_q, bvalid_q, bready_q, rvalid_q, rready_q;
   logic [10:0] awaddr_q, araddr_q;
   logic [31:0] wdata_q, rdata_q;
-  logic [ 3:0] wstrb_q;
-  logic [ 1:0] bresp_q, rresp_q;
+  logic [3:0] wstrb_q;
+  logic [1:0] bresp_q, rresp_q;
   always_ff @(posedge clk_i) begin
-    {awvalid_q, awready_q, awaddr_q}          <= {awvalid, awready, awaddr};
-    {wvalid_q, wready_q, wdata_q, wstrb_q}    <= {wvalid, wready, wdata, wstrb};
-    {arvalid_q, arready_q, araddr_q}          <= {arvalid, arready, araddr};
-    {bvalid_q, bready_q, bresp_q}             <= {bvalid, bready, bresp};
-    {rvalid_q, rready_q, rdata_q, rresp_q}    <= {rvalid, rready, rdata, rresp};
+    {awvalid_q, awready_q, awaddr_q}       <= {awvalid, awready, awaddr};
+    {wvalid_q, wready_q, wdata_q, wstrb_q} <= {wvalid, wready, wdata, wstrb};
+    {arvalid_q, arready_q, araddr_q}       <= {arvalid, arready, araddr};
+    {bvalid_q, bready_q, bresp_q}          <= {bvalid, bready, bresp};
+    {rvalid_q, rready_q, rdata_q, rresp_q} <= {rvalid, rready, rdata, rresp};
     if (!rst_ni) {awvalid_q, wvalid_q, arvalid_q, bvalid_q, rvalid_q} <= '0;
   end
 
@@ -118,9 +118,9 @@ module voxrt_registers_properties
   end
 
   // What storage holds: the last write that was answered for. One write at a time, so that the last is known.
-  logic        writes_storage_q, reads_storage_q, clean_q;
+  logic writes_storage_q, reads_storage_q, clean_q;
   logic [15:0] pending_q, stored_q;
-  logic [ 1:0] mask_q;
+  logic [1:0] mask_q;
   always_comb if (addresses_q != '0) assume (!awvalid);
   always_comb if (words_q != '0) assume (!wvalid);
   always_ff @(posedge clk_i) begin
@@ -150,8 +150,7 @@ module voxrt_registers_properties
       if (bvalid) assert (addresses_q != '0 && words_q != '0);
       if (rvalid) assert (reads_q != '0);
       if (bvalid) assert (bresp == 2'b00 || bresp == 2'b10);
-      if (rvalid && clean_q && reads_storage_q && reads_q == 3'd1)
-        assert (rdata[15:0] == stored_q && rresp == 2'b00);
+      if (rvalid && clean_q && reads_storage_q && reads_q == 3'd1) assert (rdata[15:0] == stored_q && rresp == 2'b00);
     end
   end
 

@@ -72,11 +72,11 @@ set name voxrt_$configuration
 create_project -force $name $out -part $part
 if {$board_part ne ""} {set_property board_part $board_part [current_project]}
 
-set generated [file join $rtl generated]
-add_files [concat \
-  [list $rtl/voxrt_pkg.sv $generated/voxrt_registers_pkg.sv $generated/voxrt_registers.sv] \
-  [lsearch -all -inline -not [glob $rtl/voxrt_*.sv] */voxrt_pkg.sv] \
-  [list $here/$wrapper.v]]
+set list [open $rtl/voxrt.f]
+set sources [lsearch -all -inline [split [read $list] \n] *.sv]
+close $list
+add_files [concat [lmap source $sources {file join $rtl $source}] [list $here/$wrapper.v]]
+set_property include_dirs $rtl [current_fileset]
 update_compile_order -fileset sources_1
 
 create_bd_design system

@@ -71,10 +71,7 @@ class Voxrt(LiteXModule):
                 If(memory.we, memory.ack.eq(1)).Else(NextValue(count, clocks - 1), NextState("READ")),
             ),
         )
-        fsm.act(
-            "READ",
-            If(count == 0, memory.ack.eq(1), NextState("IDLE")).Else(NextValue(count, count - 1)),
-        )
+        fsm.act("READ", If(count == 0, memory.ack.eq(1), NextState("IDLE")).Else(NextValue(count, count - 1)))
 
         ports = {
             "i_clk_i": ClockSignal(),

@@ -2,36 +2,36 @@
 module sdram_bench
   import voxrt_pkg::*;
 #(
-  parameter int unsigned TrcdPs = 20_000,
-  parameter int unsigned TrpPs = 20_000,
-  parameter int unsigned TrfcPs = 66_000,
-  parameter int unsigned RefreshPs = 7_812_500,
+  parameter int unsigned TrcdPs      = 20_000,
+  parameter int unsigned TrpPs       = 20_000,
+  parameter int unsigned TrfcPs      = 66_000,
+  parameter int unsigned RefreshPs   = 7_812_500,
   parameter int unsigned AnswerTicks = 9,
-  parameter int unsigned HoldTicks = 3
+  parameter int unsigned HoldTicks   = 3
 ) (
-  input  logic              clk_i,
-  input  logic              sdram_clk_i,  // As clk_i, later.
-  input  logic              tick_i,       // Ten changes per clock.
-  input  logic              rst_ni,
+  input  logic               clk_i,
+  input  logic               sdram_clk_i,           // As clk_i, later.
+  input  logic               tick_i,                // Ten changes per clock.
+  input  logic               rst_ni,
   // Ports 0 and 1: lines. Port 0 is the screen's.
-  input  logic              urgent_i,
-  input  logic [1:0]        valid_i,
-  output logic [3:0]        accepted_o,   // Of all ports.
-  output logic [3:0][19:0]  accepted_line_o,
-  input  logic              write_i,      // Of port 1.
-  input  logic [31:0]       line_i[2],
-  input  logic [15:0]       mask_i,
-  input  logic [255:0]      data_i,
-  output logic [1:0]        done_o,
-  output logic [255:0]      line_o,
+  input  logic               urgent_i,
+  input  logic [  1:0]       valid_i,
+  output logic [  3:0]       accepted_o,            // Requests accepted, by port.
+  output logic [  3:0][19:0] accepted_line_o,
+  input  logic               write_i,               // Whether port 1 writes.
+  input  logic [ 31:0]       line_i           [2],
+  input  logic [ 15:0]       mask_i,
+  input  logic [255:0]       data_i,
+  output logic [  1:0]       done_o,
+  output logic [255:0]       line_o,
   // Ports 2 and 3: the core's way of reading.
-  input  logic [1:0]        request_valid_i,
-  output logic [1:0]        request_ready_o,
-  input  logic [31:0]       request_address_i[2],
-  output logic [1:0]        answer_valid_o,
-  output logic [1:0]        answer_failed_o,
-  output logic [255:0]      answer0_o,
-  output logic [255:0]      answer1_o
+  input  logic [  1:0]       request_valid_i,
+  output logic [  1:0]       request_ready_o,
+  input  logic [ 31:0]       request_address_i[2],
+  output logic [  1:0]       answer_valid_o,
+  output logic [  1:0]       answer_failed_o,
+  output logic [255:0]       answer0_o,
+  output logic [255:0]       answer1_o
 );
   logic [3:0] ready, done, valid;
   logic [3:0][19:0] lines;
@@ -41,17 +41,17 @@ module sdram_bench
   logic [255:0] request_data;
   logic [1:0][255:0] answers;
 
-  assign accepted_o = ready & valid;
+  assign accepted_o      = ready & valid;
   assign accepted_line_o = lines;
-  assign done_o    = done[1:0];
-  assign answer0_o = answers[0];
-  assign answer1_o = answers[1];
-  assign valid[1:0] = valid_i;
-  assign lines[0]  = line_i[0][19:0];
-  assign lines[1]  = line_i[1][19:0];
+  assign done_o          = done[1:0];
+  assign answer0_o       = answers[0];
+  assign answer1_o       = answers[1];
+  assign valid[1:0]      = valid_i;
+  assign lines[0]        = line_i[0][19:0];
+  assign lines[1]        = line_i[1][19:0];
 
   for (genvar i = 0; i < 2; i++) begin : gen_axi
-    axi_read_request_t  request;
+    axi_read_request_t request;
     axi_read_response_t response;
 
     voxrt_axi_read_master u_master (
@@ -110,13 +110,13 @@ module sdram_bench
   // As board_sdram_pins: out by a flip-flop, in at the falling edge.
   typedef struct packed {
     logic        cke, cs_n, ras_n, cas_n, we_n;
-    logic [ 1:0] ba, dqm;
+    logic [1:0]  ba,  dqm;
     logic [12:0] a;
     logic        oe;
     logic [15:0] dq;
   } pins_t;
-  pins_t       inner, outer_q;
-  logic        driven;
+  pins_t inner, outer_q;
+  logic driven;
   logic [15:0] from_chip, from_chip_q;
 
   always_ff @(posedge clk_i) outer_q <= inner;
@@ -137,40 +137,40 @@ module sdram_bench
     .request_data_i (request_data),
     .done_o         (controller_done),
     .line_o,
-    .sdram_cke_o(inner.cke),
-    .sdram_cs_no(inner.cs_n),
-    .sdram_ras_no(inner.ras_n),
-    .sdram_cas_no(inner.cas_n),
-    .sdram_we_no(inner.we_n),
-    .sdram_ba_o(inner.ba),
-    .sdram_a_o(inner.a),
-    .sdram_dqm_o(inner.dqm),
-    .sdram_dq_oe_o(inner.oe),
-    .sdram_dq_o(inner.dq),
-    .sdram_dq_i(from_chip_q)
+    .sdram_cke_o    (inner.cke),
+    .sdram_cs_no    (inner.cs_n),
+    .sdram_ras_no   (inner.ras_n),
+    .sdram_cas_no   (inner.cas_n),
+    .sdram_we_no    (inner.we_n),
+    .sdram_ba_o     (inner.ba),
+    .sdram_a_o      (inner.a),
+    .sdram_dqm_o    (inner.dqm),
+    .sdram_dq_oe_o  (inner.oe),
+    .sdram_dq_o     (inner.dq),
+    .sdram_dq_i     (from_chip_q)
   );
 
   sdram_model #(
-    .PowerOnPs(2_000_000),
-    .TrcdPs   (TrcdPs),
-    .TrpPs    (TrpPs),
-    .TrfcPs   (TrfcPs),
-    .RefreshPs(RefreshPs),
+    .PowerOnPs  (2_000_000),
+    .TrcdPs     (TrcdPs),
+    .TrpPs      (TrpPs),
+    .TrfcPs     (TrfcPs),
+    .RefreshPs  (RefreshPs),
     .AnswerTicks(AnswerTicks),
-    .HoldTicks(HoldTicks)
+    .HoldTicks  (HoldTicks)
   ) u_model (
     .tick_i,
-    .clk_i(sdram_clk_i),
-    .cke_i(outer_q.cke),
-    .cs_ni(outer_q.cs_n),
-    .ras_ni(outer_q.ras_n),
-    .cas_ni(outer_q.cas_n),
-    .we_ni(outer_q.we_n),
-    .ba_i(outer_q.ba),
-    .a_i(outer_q.a),
-    .dqm_i(outer_q.dqm),
+    .clk_i      (sdram_clk_i),
+    .cke_i      (outer_q.cke),
+    .cs_ni      (outer_q.cs_n),
+    .ras_ni     (outer_q.ras_n),
+    .cas_ni     (outer_q.cas_n),
+    .we_ni      (outer_q.we_n),
+    .ba_i       (outer_q.ba),
+    .a_i        (outer_q.a),
+    .dqm_i      (outer_q.dqm),
     .dq_driven_i(outer_q.oe),
-    .dq_i(outer_q.dq),
+    .dq_i       (outer_q.dq),
     .dq_driven_o(driven),
     .dq_o       (from_chip)
   );

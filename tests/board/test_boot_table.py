@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -15,6 +16,7 @@ from voxrt.board.designs.boot_table import (
     encode_list,
     encode_octree,
 )
+from voxrt.board.designs.build import DESIGNS
 from voxrt.board.register_writes import camera_writes
 from voxrt.board.registers import MATERIALS, REGISTERS
 from voxrt.board.scene import Scene
@@ -102,13 +104,16 @@ def test_an_octree_beyond_the_memory_is_refused():
 
 
 def test_the_board_starts_frames_by_the_registers_of_the_core():
-    # localparams of board_frames.sv
-    assert REGISTERS["control"] == (
-        0x00C,
-        {"start": (0, 1), "continuous": (1, 1), "hold": (2, 1), "soft_reset": (3, 1), "flush": (4, 1)},
-    )
-    assert REGISTERS["status"][0] == 0x010
-    assert REGISTERS["status"][1]["busy"] == (0, 1)
+    source = (DESIGNS / "board_frames.sv").read_text()
+    addresses = dict(re.findall(r"localparam logic \[23:0\] Core(\w+) = 24'h(\w+);", source))
+    assert {name: int(value, 16) for name, value in addresses.items()} == {
+        "Control": REGISTERS["control"][0],
+        "Status": REGISTERS["status"][0],
+    }
+    (polled,) = re.findall(r"assign busy_polled = data_i\[(\d+)\];", source)
+    assert (int(polled), 1) == REGISTERS["status"][1]["busy"]
+    (written,) = re.findall(r"access_o\.data += 32'd(\d+);", source)
+    assert int(written) == 1 << REGISTERS["control"][1]["start"][0]
 
 
 @pytest.mark.parametrize("count", [3, 24, 64, 100])

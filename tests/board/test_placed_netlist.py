@@ -15,12 +15,7 @@ import pytest
 from voxrt.board.designs import build
 from voxrt.board.designs.base_design import base_contents, find_slices, patch_config
 from voxrt.board.designs.simulation.board_simulation import BoardSimulation, compile_sources, compile_verilog
-from voxrt.board.designs.simulation.placed_netlist import (
-    MODELS,
-    UnknownCellError,
-    placed_verilog,
-    write_block_rams,
-)
+from voxrt.board.designs.simulation.placed_netlist import MODELS, UnknownCellError, placed_verilog, write_block_rams
 
 pytestmark = [
     pytest.mark.slow,
@@ -90,10 +85,7 @@ def test_the_placed_netlist_answers_as_the_sources_do(base, contents, patched, t
     write_block_rams(patched, tmp_path)
     placed = compile_verilog([*MODELS, tmp_path / "placed.v"], tmp_path / "placed", [], top="top")
     sources = compile_sources(BOARD, tmp_path / "sources", extra=[SMALL], top="small_design")
-    with (
-        BoardSimulation(placed, tmp_path) as board,
-        BoardSimulation(sources, tmp_path / "run", contents) as reference,
-    ):
+    with BoardSimulation(placed, tmp_path) as board, BoardSimulation(sources, tmp_path / "run", contents) as reference:
         for simulation in (board, reference):
             simulation.run(200)
         answered = 0

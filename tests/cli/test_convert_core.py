@@ -27,7 +27,7 @@ def words_of(folder):
 
 
 def decode(row: int, block_bits: int) -> int:
-    """A word of the octree, as rtl/voxrt_word_decoder.sv gives it."""
+    """A word of the octree, as rtl/memory/voxrt_word_decoder.sv gives it."""
     payload = max(block_bits, 9)
     return 0xFFFFFF00 | row & 0xFF if row >> payload else 1 + 8 * row
 

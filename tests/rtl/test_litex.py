@@ -15,7 +15,7 @@ from oracles.icarus import flatten, need, needs_icarus, run_yosys, simulate
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 pytestmark = [
-    pytest.mark.filterwarnings("ignore"),  # what LiteX warns of is its own
+    pytest.mark.filterwarnings("ignore")  # what LiteX warns of is its own
 ]
 
 LITEX_BENCH = """

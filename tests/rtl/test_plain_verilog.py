@@ -14,7 +14,7 @@ from oracles.random_cameras import random_voxels
 
 from voxrt.board.registers import MATERIALS, REGISTERS
 from voxrt.boards.plain_verilog import merge_modules, plain_verilog
-from voxrt.rtl.configurations import RTL, read_configurations
+from voxrt.rtl.configurations import list_sources, read_configurations
 from voxrt.sim import _model
 
 BENCH = Path(__file__).parent / "verilog" / "tb.v"
@@ -202,5 +202,5 @@ def test_memories_stay_memories(plain):
     """The octree memory, and what the sources ask block RAM for."""
     text = plain("quad")
     assert re.search(r"^  reg \[12:0\] data_q \[32767:0\];", text, re.MULTILINE)
-    sources = "".join(path.read_text() for path in RTL.glob("*.sv"))
+    sources = "".join(path.read_text() for path in list_sources())
     assert set(re.findall(r"\(\* ram_style = .*? \*\)", text)) == set(re.findall(r"\(\* ram_style = .*? \*\)", sources))

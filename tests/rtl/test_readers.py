@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import pytest
 
-from voxrt.rtl.configurations import RTL, TOP, list_sources, read_configurations
+from voxrt.rtl.configurations import HEADER, RTL, TOP, list_sources, read_configurations
 
 SOURCE_CONFIGURATIONS = ("lit", "banked", "cached1")
 PLAIN_CONFIGURATIONS = ("tiny", "lit", "cached1")
@@ -64,7 +64,7 @@ def test_verilator(find, plain, tmp_path):
     lint = ("--lint-only", "--top-module", TOP)
     for name in SOURCE_CONFIGURATIONS:
         settings = [f"-G{key}={value}" for key, value in read_configurations()[name].parameters.items()]
-        finished = tool.run(*lint, "-Wno-fatal", *settings, *list_sources(), folder=tmp_path)
+        finished = tool.run(*lint, "-Wno-fatal", f"+incdir+{RTL}", *settings, *list_sources(), folder=tmp_path)
         assert (finished.returncode == 0) == (reads_sources == "yes"), finished.stderr
     for name in PLAIN_CONFIGURATIONS:
         (tmp_path / "core.v").write_text(plain(name))
@@ -80,7 +80,7 @@ def test_icarus_verilog(plain, tmp_path):
     reads_sources, reads_plain = row("Icarus Verilog", version)
     for name in SOURCE_CONFIGURATIONS:
         settings = [f"-P{TOP}.{key}={value}" for key, value in read_configurations()[name].parameters.items()]
-        finished = tool.run("-g2012", *settings, *list_sources(), folder=tmp_path)
+        finished = tool.run("-g2012", f"-I{RTL}", *settings, *list_sources(), folder=tmp_path)
         assert (finished.returncode == 0) == (reads_sources == "yes"), finished.stderr
     for name in PLAIN_CONFIGURATIONS:
         (tmp_path / "core.v").write_text(plain(name))
@@ -94,7 +94,7 @@ def test_yosys(reader, plain, tmp_path):
     (tmp_path / "core.v").write_text(plain("tiny"))
     version = re.match(r"Yosys (\d+\.\d+)", tool.run("-V", folder=tmp_path).stdout)[1]
     reads_sources, reads_plain = row(f"yosys, `{reader}`", version)
-    for source in list_sources():
+    for source in (HEADER, *list_sources()):
         shutil.copyfile(source, tmp_path / source.name)
     names = " ".join(source.name for source in list_sources())
     for name in SOURCE_CONFIGURATIONS:
@@ -118,10 +118,5 @@ def test_yosys(reader, plain, tmp_path):
 
 
 def test_every_row_is_of_a_tool_that_these_tests_know():
-    assert {tool for tool, _ in ROWS} == {
-        "Verilator",
-        "Icarus Verilog",
-        "yosys, `read_slang`",
-        "yosys, `read_verilog`",
-    }
+    assert {tool for tool, _ in ROWS} == {"Verilator", "Icarus Verilog", "yosys, `read_slang`", "yosys, `read_verilog`"}
     assert len(ROWS) == 5

@@ -17,7 +17,7 @@ from voxrt.rtl.wrappers.verilog_file import VerilogFileError, memory_bytes, read
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 pytestmark = [
-    pytest.mark.filterwarnings("ignore"),  # what the frameworks warn of is theirs
+    pytest.mark.filterwarnings("ignore")  # what the frameworks warn of is theirs
 ]
 
 

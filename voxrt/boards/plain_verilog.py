@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 
 import voxrt
 from voxrt.errors import ToolError
-from voxrt.rtl.configurations import TOP, list_sources
+from voxrt.rtl.configurations import HEADER, TOP, list_sources
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -146,7 +146,7 @@ def _shorten(body: str) -> str:
 def _run_yosys(configuration: Configuration, folder: Path, progress: Callable[[str], None]) -> str:
     """Run yosys in a folder with copies of the sources: the paths of this machine show nowhere in what it writes."""
     sources = list_sources()
-    for source in sources:
+    for source in (HEADER, *sources):
         shutil.copyfile(source, folder / source.name)
     settings = " ".join(f"-G {name}={value}" for name, value in configuration.parameters.items())
     script = _SCRIPT.format(top=TOP, settings=settings, sources=" ".join(source.name for source in sources))

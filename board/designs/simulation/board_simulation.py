@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.board.designs.build import list_sources, parameters, top_of
+from voxrt.board.designs.build import RTL, list_sources, parameters, top_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _HERE = Path(__file__).resolve().parent
-_CELLS = {"ecp5_cells.sv"}
 _CHIPS = {"ecp5_top_sdram"}  # Tops whose pins need an SDRAM ...
 _CHIP = (_HERE / "sdram_model.sv", _HERE / "sdram_board.sv")  # ... as here.
 
@@ -74,8 +73,7 @@ def compile_sources(
     numbers = {**parameters(board), **more} if top is None else more
     settings = [f"-G{name}={value}" for name, value in numbers.items()]
     settings += ['-GOctreeFile="octree.hex"', '-GTableFile="table.hex"']
-    models = _HERE / "ecp5_models.sv"
-    sources = [models if path.name in _CELLS else path for path in list_sources(top_of(board))]
+    sources = list_sources(top_of(board))
     if top is None and top_of(board) in _CHIPS:
         sources, top = [*sources, *_CHIP], _CHIP[-1].stem
     return compile_verilog(
@@ -124,7 +122,7 @@ def compile_verilog(
     ]
     command += ["-Wno-fatal", "-Wno-lint", "-O3", "--x-assign", "fast", "--x-initial", "fast", "--noassert"]
     command += ["--output-split", "20000", "--output-split-cfuncs", "500"]
-    command += [*settings, _HERE / "simulation.cpp", *sources]
+    command += [f"+incdir+{RTL}", *settings, _HERE / "simulation.cpp", *sources]
     _run([str(part) for part in command], environment)
     # The package's makefile leaves the option for precompiled headers empty.
     flags = ["CFG_CXXFLAGS_PCH_I=-include", f"OPT_FAST={opt}", "OPT_SLOW=-O0", "OPT_GLOBAL=-O1"]
@@ -168,20 +166,7 @@ class BoardSimulation:
                 raise RuntimeError("the monitor finds no picture")
             size, clocks, visible, sync, *rest = (int(part) for part in line.split())
             row, pixels_of_row, sync_clocks = ((rest[2 * i], rest[2 * i + 1]) for i in range(3))
-            front_columns, front_rows, balance, mixed = rest[6:]
-            timing = Timing(
-                size // 3,
-                clocks,
-                visible,
-                sync,
-                row,
-                pixels_of_row,
-                sync_clocks,
-                front_columns,
-                front_rows,
-                balance,
-                mixed,
-            )
+            timing = Timing(size // 3, clocks, visible, sync, row, pixels_of_row, sync_clocks, *rest[6:])
             assert self._process.stdout is not None
             data = self._process.stdout.read(size)
             pixels = np.frombuffer(data, dtype=np.uint8)

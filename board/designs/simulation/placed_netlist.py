@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
 _HERE = Path(__file__).resolve().parent
-MODELS = (_HERE / "ecp5_models.sv", _HERE / "placed_ram.v")
+MODELS = (_HERE.parent / "ecp5_cells.sv", _HERE / "placed_ram.v")
 """The models of PLL, output register and block RAM that the Verilog needs."""
 
 _PIN_WIDTHS = {"AD": 14, "DI": 18, "DO": 18}
@@ -213,7 +213,7 @@ class _Writer:
             factor = f"{side.lower()}{number}"
             bits = ", ".join(self.value(cell, f"{side}{i}") for i in reversed(range(18)))
             self._multiplier_value(cell, f"INPUT{side}", factor, 18, f"{{{bits}}}")
-            # Factors have 36 bits, so that the product's 36 bits are right whether a factor has a sign or not.
+            # The factors have 36 bits, so that the product's 36 bits are right whether a factor has a sign or not.
             sign = f"{factor}[17]" if signed else "1'b0"
             factors.append(f"{{{{18{{{sign}}}}}, {factor}}}")
         self._multiplier_value(cell, "OUTPUT", f"p{number}", 36, f"{factors[0]} * {factors[1]}")

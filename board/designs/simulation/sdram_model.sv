@@ -7,19 +7,19 @@
 // What is read is there AnswerTicks after the clock edge that CAS latency counts from, and stays HoldTicks beyond the next:
 // between, it is noise. These have the way of the clock to the chip, and the data's way back, in them.
 module sdram_model #(
-  parameter int unsigned PeriodPs = 13_333,
-  parameter int unsigned PowerOnPs = 200_000_000,
-  parameter int unsigned TrcdPs = 20_000,
-  parameter int unsigned TrpPs = 20_000,
-  parameter int unsigned TrcPs = 65_000,
-  parameter int unsigned TrasPs = 45_000,
-  parameter int unsigned TrfcPs = 66_000,
-  parameter int unsigned TwrPs = 15_000,
-  parameter int unsigned TrrdPs = 15_000,
-  parameter int unsigned RefreshPs = 7_812_500,
-  parameter int unsigned AnswerTicks = 9,
-  parameter int unsigned HoldTicks = 3,
-  parameter bit          ChecksDrivers = 1'b1  // dq_driven_i is known.
+  parameter int unsigned PeriodPs      = 13_333,
+  parameter int unsigned PowerOnPs     = 200_000_000,
+  parameter int unsigned TrcdPs        = 20_000,
+  parameter int unsigned TrpPs         = 20_000,
+  parameter int unsigned TrcPs         = 65_000,
+  parameter int unsigned TrasPs        = 45_000,
+  parameter int unsigned TrfcPs        = 66_000,
+  parameter int unsigned TwrPs         = 15_000,
+  parameter int unsigned TrrdPs        = 15_000,
+  parameter int unsigned RefreshPs     = 7_812_500,
+  parameter int unsigned AnswerTicks   = 9,
+  parameter int unsigned HoldTicks     = 3,
+  parameter bit          ChecksDrivers = 1'b1          // dq_driven_i is known.
 ) (
   input  logic        tick_i,
   input  logic        clk_i,
@@ -38,21 +38,21 @@ module sdram_model #(
 );
   logic [15:0] memory[1<<24];
 
-  longint unsigned now = 0;                     // In picoseconds.
-  longint unsigned activated[4], closed[4];     // A bank closed by automatic precharge: when that begins.
+  longint unsigned now = 0;  // In picoseconds.
+  longint unsigned activated[4], closed[4];  // Automatic precharge closes a bank at its beginning.
   longint unsigned refreshed = 0, mode_set = 0, written = 0;
   logic [12:0] row[4];
-  logic [ 3:0] open = '0, closing = '0;
-  logic        has_mode = 1'b0, precharged = 1'b0;
+  logic [3:0] open = '0, closing = '0;
+  logic has_mode = 1'b0, precharged = 1'b0;
   int unsigned refreshes = 0, latency = 0;
 
-  int unsigned beats = 0;                       // That the burst still has.
-  logic        writes, automatic_precharge;
-  logic [ 1:0] bank;
-  logic [ 8:0] column;
-  logic        pipe_valid[4];
+  int unsigned beats = 0;  // Beats that the burst still has.
+  logic writes, automatic_precharge;
+  logic [1:0] bank;
+  logic [8:0] column;
+  logic pipe_valid[4];
   logic [15:0] pipe[4];
-  logic        answer_valid = 1'b0, clk_before = 1'b0;
+  logic answer_valid = 1'b0, clk_before = 1'b0;
   logic [15:0] answer;
   int unsigned ticks = 0;
 
@@ -89,7 +89,9 @@ module sdram_model #(
         rule(refreshes == 0 || now - refreshed >= 64'(TrfcPs), "tRFC");
         rule(!has_mode || now - mode_set >= 64'(2 * PeriodPs), "tMRD");
       end
-      unique case ({ras_ni, cas_ni, we_ni})
+      unique case ({
+        ras_ni, cas_ni, we_ni
+      })
         3'b000: begin
           rule(open == '0 && precharged && refreshes >= 8, "the mode is set before precharge and 8 refreshes");
           rule(a_i[2:0] == 3'd3 && !a_i[3] && (a_i[6:4] == 3'd2 || a_i[6:4] == 3'd3), "mode");
@@ -128,10 +130,10 @@ module sdram_model #(
           rule(open[ba_i] && !closing[ba_i], "a burst in a closed bank");
           rule(now >= activated[ba_i] + 64'(TrcdPs), "tRCD");
           rule(beats == 0, "a burst in a burst");
-          beats  = 8;
-          writes = !we_ni;
-          bank   = ba_i;
-          column = a_i[8:0];
+          beats               = 8;
+          writes              = !we_ni;
+          bank                = ba_i;
+          column              = a_i[8:0];
           automatic_precharge = a_i[10];
           if (a_i[10]) begin
             closing[ba_i] = 1'b1;

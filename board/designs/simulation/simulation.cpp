@@ -25,7 +25,7 @@
 
 namespace {
 
-constexpr int ticks_per_bit = 6; // Of a bit clock; two bits each.
+constexpr int ticks_per_bit = 6; // Ticks per bit; a bit clock has two bits.
 constexpr int ticks_per_pixel = 30;
 constexpr int64_t ticks_per_second = 750'000'000;
 constexpr int columns = 640, rows = 480;

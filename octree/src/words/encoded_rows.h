@@ -1,4 +1,4 @@
-// The rows of the ray tracer's octree memory, as rtl/voxrt_word_encoder.sv makes them of words.
+// The rows of the ray tracer's octree memory, as rtl/memory/voxrt_word_encoder.sv makes them of words.
 #pragma once
 
 #include "words.h"

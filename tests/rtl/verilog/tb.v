@@ -7,15 +7,15 @@
 // The stream's sink is not ready at a third of the clocks, by a shift register: the same ones in every run.
 `timescale 1ns / 1ns
 module tb;
-  parameter COMMANDS = 1;           // in commands.hex
-  parameter CLOCKS   = 1000000;     // after which the bench gives up
-  parameter MEMORY_CLOCKS = 3;      // from an address of the memory port to its word
+  parameter COMMANDS = 1;           // How many commands.hex has.
+  parameter CLOCKS   = 1000000;     // The bench gives up after so many.
+  parameter MEMORY_CLOCKS = 3;      // Clocks from an address of the memory port to its word.
 
   localparam WRITE_MEMORY   = 4'h0;
   localparam WRITE_REGISTER = 4'h1;
   localparam READ_REGISTER  = 4'h2;
-  localparam WAIT_REGISTER  = 4'h3; // until all bits of data are set
-  localparam CHECK_MEMORY   = 4'h4; // read a word: it must be data
+  localparam WAIT_REGISTER  = 4'h3; // Read until all bits of data are set.
+  localparam CHECK_MEMORY   = 4'h4; // Read a word: it must be data.
 
   reg         clk, rst_n;
   reg         awvalid, wvalid, bready, arvalid, rready;
