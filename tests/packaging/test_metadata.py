@@ -19,8 +19,9 @@ EXTRAS = {"view", "compare", "fpga", "cluster"}
 TEXTS = {".py", ".md", ".rst", ".toml", ".yml", ".yaml", ".txt", ".html", ".js", ".cpp", ".h", ".sv", ".cmake", ".sh"}
 OWN_FOLDERS = ("voxrt", "voxelize", "octree", "export", "rtl", "sim", "view", "board", "serve", "web", "tests", "bench")
 
-EXTRA = re.compile(r"(?<![\w.-])(voxrt(?:-\w+)?|\.)\\?\[([a-z]+(?:,[a-z]+)*)\\?\]")
-"""A requirement with extras, as in voxrt-build[view], also where a pattern of a test escapes its brackets."""
+EXTRA = re.compile(r"(?<![\w.?-])(voxrt(?:-\w+)?|\.)\\?\[([a-z]+(?:,[a-z]+)*)\\?\]")
+"""A requirement with extras, as in voxrt-build[view], also where a pattern of a test escapes its brackets.
+JavaScript's `?.[index]` is none."""
 
 INSTALL = re.compile(r"(?:pip install|uvx|uv tool (?:run|install)|uv pip install)\s+(?:-\S+\s+)*['\"]?(voxrt[\w-]*)")
 """What an installer is told to fetch by a name of ours."""
@@ -31,7 +32,7 @@ def own_texts() -> list[Path]:
     for folder in (*OWN_FOLDERS, "docs", "examples"):
         places += (ROOT / folder).rglob("*")
     files = {path for path in places if path.suffix in TEXTS and path.is_file() and not path.is_symlink()}
-    return sorted(path for path in files if path != Path(__file__).resolve())
+    return sorted(path for path in files - {Path(__file__).resolve()} if "node_modules" not in path.parts)
 
 
 def lines() -> list[tuple[str, str]]:

@@ -54,7 +54,8 @@ struct CoreConfiguration {
     std::unique_ptr<Core> (*make)();
 };
 
-const std::vector<CoreConfiguration> cores = { // none in a build of chosen configurations
+// A build of chosen configurations has none.
+const std::vector<CoreConfiguration> cores = {
 #define VOXRT_CORE(name) {#name, make_core_##name},
 #include "cores.inc"
 #undef VOXRT_CORE
