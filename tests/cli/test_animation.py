@@ -108,9 +108,9 @@ def test_files_keep_the_frames(lift, tmp_path):
 @pytest.mark.parametrize("root", [-1, 10**9, 0.5, "1"])
 def test_a_manifest_with_a_wrong_root_is_refused(lift, tmp_path, root):
     files = voxrt.build_animation(lift, tmp_path, depth=4, times=voxrt.frame_times(0, 2, 4)).outputs
-    said = json.loads(files["manifest"].read_text())
-    said["animation"]["frames"][1]["root"] = root
-    files["manifest"].write_text(json.dumps(said))
+    manifest = json.loads(files["manifest"].read_text())
+    manifest["animation"]["frames"][1]["root"] = root
+    files["manifest"].write_text(json.dumps(manifest))
     with pytest.raises(voxrt.RomError):
         voxrt.read_any(files["mem"])
 
@@ -174,7 +174,7 @@ def test_a_command_that_uses_one_frame_says_so(lift, monkeypatch, capsys, comman
 
 
 @pytest.mark.parametrize(
-    ("arguments", "told"),
+    ("arguments", "refusal"),
     [
         (["lift.glb", "--frames", "0:2:0"], (2, "0 frames are not 1 to 4096")),
         (["lift.glb", "--frames", "2:2:4"], (2, "must be after the start")),
@@ -191,14 +191,14 @@ def test_a_command_that_uses_one_frame_says_so(lift, monkeypatch, capsys, comman
     ],
 )
 @pytest.mark.usefixtures("lift")
-def test_what_is_no_animation_is_refused(tmp_path, monkeypatch, capsys, arguments, told):
-    code, said = told
+def test_what_is_no_animation_is_refused(tmp_path, monkeypatch, capsys, arguments, refusal):
+    code, message = refusal
     monkeypatch.chdir(tmp_path)
     write_still_obj(tmp_path / "still.obj", 1.0)
     (tmp_path / "empty").mkdir()
     assert run(["build", *arguments, "-o", "out"]) == code
     error = capsys.readouterr().err.strip().splitlines()[-1]
-    assert said in error
+    assert message in error
     assert not (tmp_path / "out").exists()
 
 

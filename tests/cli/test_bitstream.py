@@ -77,19 +77,19 @@ def test_what_an_asset_gives_up_is_told(voxrt):
         finished = voxrt("bitstream", planet, "--depth", "8", "--board", name)
         assert finished.code == 0
         assert "words give up 20 % of the surface; --depth 7 fits without loss" in finished.err
-        said = {line[2:12].strip(): line for line in finished.err.splitlines()}
-        assert [row for row in said if row in {"budget", "all of it"}] == rows
-        assert f"32,769 of {len(whole):,} words: " in said["budget"]
-    assert f"voxrt build {planet} --depth 8 -o out; voxrt upload out/planet.mem --to serial:PORT" in said["all of it"]
+        lines = {line[2:12].strip(): line for line in finished.err.splitlines()}
+        assert [row for row in lines if row in {"budget", "all of it"}] == rows
+        assert f"32,769 of {len(whole):,} words: " in lines["budget"]
+    assert f"voxrt build {planet} --depth 8 -o out; voxrt upload out/planet.mem --to serial:PORT" in lines["all of it"]
     finished = voxrt("bitstream", planet, "--depth", "8", "--board", "ulx3s-85f", "--json")
     assert json.loads(finished.out)["budget"]["words"] == 32_769
     assert "budget" not in voxrt("bitstream", "house.obj", "--board", "ulx3s-85f").err
 
 
-@pytest.mark.parametrize(("reached", "said"), [(80.0, False), (53.1, True)])
-def test_a_clock_that_is_not_reached_is_told(reached, said):
+@pytest.mark.parametrize(("reached", "shown"), [(80.0, False), (53.1, True)])
+def test_a_clock_that_is_not_reached_is_told(reached, shown):
     clocks = {"system": reached, "pixel": 100.0, "bit": 300.0}
-    told = BitstreamResult(
+    result = BitstreamResult(
         *(
             "house",
             "bare",
@@ -109,6 +109,6 @@ def test_a_clock_that_is_not_reached_is_told(reached, said):
             29.8,
         )
     )
-    rows = dict(summary_rows(told, Path("house.report.json")))
+    rows = dict(summary_rows(result, Path("house.report.json")))
     assert rows["cycles"].endswith("whole pictures are shown, however long they take")
-    assert ("place and route reach 53.1 of 75.0 MHz" in rows.get("clock", "")) == said
+    assert ("place and route reach 53.1 of 75.0 MHz" in rows.get("clock", "")) == shown

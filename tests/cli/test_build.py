@@ -298,8 +298,8 @@ end_header
 
 def test_colours_bound_what_paint_is_reduced_to(voxrt, folder):
     (folder / "rainbow.ply").write_text(PLY)
-    for asked, most in ((("--colours", "5"), 5), ((), DEFAULT_COLOURS)):
-        assert voxrt("build", "rainbow.ply", "--depth", "6", *asked).code == 0
+    for options, most in ((("--colours", "5"), 5), ((), DEFAULT_COLOURS)):
+        assert voxrt("build", "rainbow.ply", "--depth", "6", *options).code == 0
         manifest = json.loads((folder / "rainbow.json").read_bytes())
         names = [material["name"] for material in manifest["materials"][1:]]
         assert names[0] == "vertex colours"

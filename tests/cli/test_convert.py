@@ -68,14 +68,14 @@ def test_a_listing_with_its_materials(voxrt, folder):
     )
     (folder / "scene.txt").write_text(f"Node 0: Material ID = None, MID1 = False, First Child Index = 1\n{children}")
     assert voxrt("convert", "scene.txt", "scene.mem", "--material", "Roof=#d65438").code == 0
-    told = json.loads(voxrt("info", "scene.mem", "--json").out)
-    assert told["voxels"] == 1
-    assert told["materials"][1] == {"id": 1, "name": "Roof", "colour": [214, 84, 56], "voxels": 1}
+    info = json.loads(voxrt("info", "scene.mem", "--json").out)
+    assert info["voxels"] == 1
+    assert info["materials"][1] == {"id": 1, "name": "Roof", "colour": [214, 84, 56], "voxels": 1}
     assert voxrt("convert", "scene.txt", "scene.mem").code == 3
 
 
 @pytest.mark.parametrize(
-    ("arguments", "code", "said"),
+    ("arguments", "code", "message"),
     [
         (["house.mem", "house.png"], 2, "not a format to write"),
         (["house.mem", "house.blob", "--material", "Roof"], 2, "NAME=RRGGBB"),
@@ -85,8 +85,8 @@ def test_a_listing_with_its_materials(voxrt, folder):
         (["broken.obj", "house.blob"], 3, "broken.obj"),
     ],
 )
-def test_refusals(voxrt, built, arguments, code, said):
+def test_refusals(voxrt, built, arguments, code, message):
     (built / "broken.obj").write_text("f 1 2 3\n")
     finished = voxrt("convert", *arguments)
     assert finished.code == code
-    assert said in finished.error
+    assert message in finished.error

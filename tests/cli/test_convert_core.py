@@ -79,14 +79,14 @@ def test_the_writes_are_those_of_the_scene(voxrt, built):
     assert voxrt("convert", "house.mem", "out", "--form", "core", "--size", "32x24").code == 0
     lines = (built / "out/boot.hex").read_text().split()
     writes = [tuple(int(part, 16) for part in line.split("_")) for line in lines]
-    told = dict(writes)
-    assert told[REGISTERS["size"][0]] == 24 << 16 | 32
-    assert told[REGISTERS["depth"][0]] == 5
-    assert told[MEMORY] == words_of(built)[0]
+    values = dict(writes)
+    assert values[REGISTERS["size"][0]] == 24 << 16 | 32
+    assert values[REGISTERS["depth"][0]] == 5
+    assert values[MEMORY] == words_of(built)[0]
     assert writes[-1] == (REGISTERS["control"][0], 1)
     rom, _ = library.read_rom(built / "house.mem")
     for number, material in enumerate(rom.materials):
-        assert told[MATERIALS + 4 * number].to_bytes(4, "big")[1:] == bytes(material.colour)
+        assert values[MATERIALS + 4 * number].to_bytes(4, "big")[1:] == bytes(material.colour)
     known = {address for address, _ in REGISTERS.values()} | {MATERIALS + 4 * number for number in range(256)}
     assert {address for address, _ in writes} - known == {MEMORY}
 
@@ -107,16 +107,16 @@ int main(void) {
 """)
     build = ["cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-o", "main", "main.c"]
     subprocess.run(build, cwd=built, check=True)
-    said = subprocess.run(["./main"], cwd=built, capture_output=True, text=True, check=True).stdout.split()
-    assert said[:3] == ["5", "32", "24"]
+    printed = subprocess.run(["./main"], cwd=built, capture_output=True, text=True, check=True).stdout.split()
+    assert printed[:3] == ["5", "32", "24"]
     words = words_of(built)
     np.testing.assert_array_equal([int(word, 16) for word in said[3 : 3 + len(words)]], words)
     boot = (built / "out/boot.hex").read_text().split()
-    assert said[3 + len(words) :] == [write for write in boot if not write.startswith("008")]
+    assert printed[3 + len(words) :] == [write for write in boot if not write.startswith("008")]
 
 
 def test_errors_are_one_line_and_write_nothing(voxrt, built):
-    for arguments, said in (
+    for arguments, message in (
         (("house.mem", "out.mem", "--form", "core"), "--form core writes several files; name a folder"),
         (
             ("house.mem", "out", "--form", "core", "--config", "nano"),
@@ -128,7 +128,7 @@ def test_errors_are_one_line_and_write_nothing(voxrt, built):
     ):
         finished = voxrt("convert", *arguments)
         assert finished.code == 2, finished
-        assert said in finished.error
+        assert message in finished.error
     assert not (built / "out").exists()
 
 

@@ -32,14 +32,14 @@ def worlds(folder):
 def test_info(voxrt):
     finished = voxrt("info", "before.mem", "--json")
     assert finished.code == 0
-    told = msgspec.json.decode(finished.out, type=InfoResult, strict=True)
-    assert (told.name, told.depth, told.words, told.blocks, told.voxels) == ("before", 3, 25, 3, 65)
-    assert told.world is not None
-    assert (told.world.origin, told.world.voxel_size) == ((1, 2, 3), 0.5)
-    assert [(row.level, row.solid, row.empty) for row in told.levels] == [(3, 0, 0), (2, 1, 6), (1, 0, 7), (0, 1, 7)]
-    assert told.bounds == ((0, 0, 0), (8, 4, 4))
-    assert {board.name: board.fits for board in told.boards} == dict.fromkeys(BOARDS, True)
-    assert [(row.id, row.name, row.voxels) for row in told.materials] == [
+    result = msgspec.json.decode(finished.out, type=InfoResult, strict=True)
+    assert (result.name, result.depth, result.words, result.blocks, result.voxels) == ("before", 3, 25, 3, 65)
+    assert result.world is not None
+    assert (result.world.origin, result.world.voxel_size) == ((1, 2, 3), 0.5)
+    assert [(row.level, row.solid, row.empty) for row in result.levels] == [(3, 0, 0), (2, 1, 6), (1, 0, 7), (0, 1, 7)]
+    assert result.bounds == ((0, 0, 0), (8, 4, 4))
+    assert {board.name: board.fits for board in result.boards} == dict.fromkeys(BOARDS, True)
+    assert [(row.id, row.name, row.voxels) for row in result.materials] == [
         (0, "empty", 512 - 65),
         (1, "stone", 64),
         (2, "glass", 1),
@@ -59,13 +59,13 @@ def test_info_for_people(voxrt):
 def test_diff(voxrt):
     finished = voxrt("diff", "before.mem", "after.mem", "--json")
     assert finished.code == 0
-    told = msgspec.json.decode(finished.out, type=DiffResult, strict=True)
+    result = msgspec.json.decode(finished.out, type=DiffResult, strict=True)
     regions = (
         Region(((0, 0, 0), (1, 1, 1)), 0, 0, 1),
         Region(((7, 0, 0), (8, 1, 1)), 0, 1, 0),
         Region(((7, 7, 0), (8, 8, 1)), 1, 0, 0),
     )
-    assert told == DiffResult(3, 1, 1, 1, ((0, 0, 0), (8, 8, 1)), regions)
+    assert result == DiffResult(3, 1, 1, 1, ((0, 0, 0), (8, 8, 1)), regions)
 
 
 @pytest.mark.usefixtures("worlds")

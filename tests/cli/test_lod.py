@@ -26,8 +26,8 @@ def noise(folder):
 def test_a_memory_goes_into_the_dialect_and_back(voxrt, noise):
     assert voxrt("convert", "noise.mem", "detailed.mem", "--dialect", "lod").code == 0
     assert json.loads((noise / "detailed.json").read_text())["dialect"] == "lod"
-    told = json.loads(voxrt("info", "detailed.mem", "--json").out)
-    assert 0 < told["mean_materials"] <= told["blocks"]
+    info = json.loads(voxrt("info", "detailed.mem", "--json").out)
+    assert 0 < info["mean_materials"] <= info["blocks"]
     assert "mean materials for" in voxrt("info", "detailed.mem").out
     assert json.loads(voxrt("info", "noise.mem", "--json").out)["mean_materials"] is None
     assert json.loads(voxrt("diff", "noise.mem", "detailed.mem", "--json").out)["voxels"] == 0

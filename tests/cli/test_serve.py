@@ -22,7 +22,7 @@ from voxrt.serve.frame_client import open_client
 
 @contextmanager
 def serving(folder, *arguments):
-    """A running ``voxrt serve``: what it said on standard output; ended by Ctrl-C."""
+    """A running ``voxrt serve``: what it wrote on standard output; ended by Ctrl-C."""
     command = [sys.executable, "-m", "voxrt", "serve", *arguments, "--port", "0", "--json"]
     with subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         try:
@@ -35,8 +35,8 @@ def serving(folder, *arguments):
             yield json.loads("".join(lines))
         finally:
             process.send_signal(signal.SIGINT)
-            _, said = process.communicate(timeout=60)
-    assert process.returncode == 0, said
+            _, errors = process.communicate(timeout=60)
+    assert process.returncode == 0, errors
 
 
 def test_a_server_without_scenes_offers_the_examples(folder):
@@ -169,7 +169,7 @@ def test_a_server_for_others_wants_a_token(folder):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "code", "said"),
+    ("arguments", "code", "message"),
     [
         (["serve", "--port", "65536"], 2, "--port must be an integer 0 … 65535, not 65536"),
         (["serve", "--depth", "17"], 2, "--depth must be an integer 1 … 16, not 17"),
@@ -183,7 +183,7 @@ def test_a_server_for_others_wants_a_token(folder):
         (["upload", "nothing.mem"], 2, "give one of them"),
     ],
 )
-def test_errors(voxrt, arguments, code, said):
+def test_errors(voxrt, arguments, code, message):
     finished = voxrt(*arguments)
     assert finished.code == code
-    assert said in finished.error
+    assert message in finished.error

@@ -20,9 +20,9 @@ EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 def test_what_a_ray_reads(voxrt, folder):
     assert voxrt("build", "house.obj", "--depth", "5").code == 0
-    told = voxrt("trace", "house.mem", "--pixel", "32,24", "--size", "64x48", "--json")
-    assert told.code == 0, told.err
-    result = msgspec.json.decode(told.out, type=TraceResult, strict=True)
+    finished = voxrt("trace", "house.mem", "--pixel", "32,24", "--size", "64x48", "--json")
+    assert finished.code == 0, finished.err
+    result = msgspec.json.decode(finished.out, type=TraceResult, strict=True)
     rom = read_rom(folder / "house.mem")[0]
     assert [rom.octree.words[reading.address] for reading in result.readings] == [r.word for r in result.readings]
     assert result.material == material_at(rom.octree, result.voxel) != 0

@@ -9,7 +9,7 @@ import pytest
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
         (["frob"], "there is no command 'frob'"),
         (["build"], "ASSET is missing"),
@@ -62,16 +62,16 @@ import pytest
         (["core", "--config", "tiny", "--verilog", "house.mtl/tiny.v"], "house.mtl is a file, not a folder"),
     ],
 )
-def test_usage(voxrt, arguments, said):
+def test_usage(voxrt, arguments, message):
     finished = voxrt(*arguments)
     assert finished.code == 2
     assert finished.out == ""
     assert finished.error.startswith("voxrt: error: ")
-    assert said in finished.error
+    assert message in finished.error
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
         (["build", "nothing.glb"], "nothing.glb: no such file"),
         (["build", "house.obj", "more.obj"], "more.obj: no such file; check the path; nothing was built"),
@@ -88,7 +88,7 @@ def test_usage(voxrt, arguments, said):
         (["render", "folder.glb"], "folder.glb"),
     ],
 )
-def test_asset(voxrt, folder, arguments, said):
+def test_asset(voxrt, folder, arguments, message):
     (folder / "folder.glb").mkdir()
     for name in ("notes.txt", "notes", "broken.glb", "broken.usda", "broken.obj"):
         (folder / name).write_text("v 1 2 three\nneither this nor that\n")
@@ -97,7 +97,7 @@ def test_asset(voxrt, folder, arguments, said):
     assert finished.code == 3
     assert finished.out == ""
     assert finished.error.startswith("voxrt: error: ")
-    assert said in finished.error
+    assert message in finished.error
     assert sorted(folder.iterdir()) == before
 
 

@@ -127,11 +127,11 @@ def _surface_appearance(
 
 def _rgba(name: str, colours: ArrayLike, count: int, what: str) -> NDArray[np.uint8]:
     """Return colours as uint8, shape (N, 4), opaque where they do not say."""
-    given = np.asarray(colours)
-    if given.dtype.kind == "f":  # 1.0 may mean the darkest or the brightest
+    rows = np.asarray(colours)
+    if rows.dtype.kind == "f":  # 1.0 may mean the darkest or the brightest
         raise TypeError(f"{name} must be integers 0 … 255, not floats: multiply by 255 and round")
-    channels = given.shape[-1] if given.ndim == 2 and given.shape[-1] == 4 else 3
-    found = whole_array(name, given, ("N", channels), np.uint8, low=0, high=255)
+    channels = rows.shape[-1] if rows.ndim == 2 and rows.shape[-1] == 4 else 3
+    found = whole_array(name, rows, ("N", channels), np.uint8, low=0, high=255)
     if len(found) != count:
         raise ValueError(f"{name} has {len(found)} rows, and there are {count} {what}")
     return found if channels == 4 else np.column_stack([found, np.full(count, 255, np.uint8)])

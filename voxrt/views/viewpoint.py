@@ -163,8 +163,8 @@ def _sight(preferred: Vector, look: Triple | None, right: Triple | None, up: Tri
         return _unit(look, "look")
     if right is not None and up is not None:
         return _unit(np.cross(up, right), "up x right")
-    given = up if right is None else right
-    axis = np.zeros(3) if given is None else _unit(given, "up" if right is None else "right")
+    register = up if right is None else right
+    axis = np.zeros(3) if register is None else _unit(given, "up" if right is None else "right")
     return _unit(preferred - preferred @ axis * axis, "look")
 
 
@@ -172,13 +172,13 @@ def _complete(
     sight: Vector, size: tuple[int, int], look: Triple | None, right: Triple | None, up: Triple | None
 ) -> tuple[Triple, Triple, Triple]:
     """Return all registers: missing ones as of an upright right-handed camera that looks along `sight`."""
-    given = up if right is None else right
-    if given is None:  # look alone is a direction
+    register = up if right is None else right
+    if register is None:  # look alone is a direction
         made = look_at(np.zeros(3), sight, size=size, up=_upright(sight))
         return made.look, made.right, made.up
-    across = _unit(right if right is not None else np.cross(sight, given), "right" if right else "look x up")
+    across = _unit(right if right is not None else np.cross(sight, register), "right" if right else "look x up")
     above = np.cross(across, sight)
-    step = float(np.linalg.norm(given))
+    step = float(np.linalg.norm(register))
     reach = min(step * focal_length(size), _REGISTER / np.abs(sight).max())
     return (
         look or _register(sight * reach),

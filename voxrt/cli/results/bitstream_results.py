@@ -33,15 +33,15 @@ class BitstreamResult(msgspec.Struct, frozen=True):
     lanes: int
     clock_hz: int
     fmax_mhz: dict[str, float]
-    """Of each clock, by place and route."""
+    """Frequency that place and route reach, per clock."""
     utilisation: dict[str, tuple[int, int]]
     """Cells of the part: used, available."""
     seed: int
-    """Of the placement."""
+    """Seed of the placement."""
     size: tuple[int, int]
     """Columns and rows of the pictures; the screen has 640 x 480."""
     cycles_per_pixel: float
-    """Of the slowest of eight views of the orbit."""
+    """Cycles per pixel in the slowest of eight views of the orbit."""
     lead_lines: float | None
     """How many lines of the screen each row is complete before it is shown, at least; negative: rows are repeated; null
     where whole pictures are shown from a frame buffer."""

@@ -23,6 +23,6 @@ class UploadResult(msgspec.Struct, frozen=True):
     depth: int
     words: int
     crc32: int
-    """Of the words as the board read them back, little-endian bytes."""
+    """Checksum of the words as the board read them back, little-endian bytes."""
     written: bool
     """False for a dry run."""

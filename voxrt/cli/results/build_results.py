@@ -76,7 +76,7 @@ class RenderResult(msgspec.Struct, frozen=True, omit_defaults=True):
     outputs: dict[str, str] | msgspec.UnsetType = msgspec.UNSET
     """Files written, by kind: `picture`. In a build they stand with the build's."""
     cache: CacheEntry | msgspec.UnsetType = msgspec.UNSET
-    """Of a configuration with caches."""
+    """The cache; missing for a configuration without one."""
     wrong_pixels: int | msgspec.UnsetType = msgspec.UNSET
     """With ``--check``: pixels on which the two engines differ."""
 
@@ -95,7 +95,7 @@ class BudgetEntry(msgspec.Struct, frozen=True):
     recoloured: int
     """Voxels that took another material, hidden ones included."""
     psnr: float | None
-    """Of the scene's picture against that without a budget, decibel; null where they are equal."""
+    """Ratio of the scene's picture to that without a budget, decibel; null where they are equal."""
     ssim: float
     lossless: tuple[int, int] | None = None
     """The greatest depth that fits without loss, and its words there, where much was given up."""
