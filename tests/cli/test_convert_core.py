@@ -110,7 +110,7 @@ int main(void) {
     printed = subprocess.run(["./main"], cwd=built, capture_output=True, text=True, check=True).stdout.split()
     assert printed[:3] == ["5", "32", "24"]
     words = words_of(built)
-    np.testing.assert_array_equal([int(word, 16) for word in said[3 : 3 + len(words)]], words)
+    np.testing.assert_array_equal([int(word, 16) for word in printed[3 : 3 + len(words)]], words)
     boot = (built / "out/boot.hex").read_text().split()
     assert printed[3 + len(words) :] == [write for write in boot if not write.startswith("008")]
 

@@ -164,7 +164,7 @@ def _sight(preferred: Vector, look: Triple | None, right: Triple | None, up: Tri
     if right is not None and up is not None:
         return _unit(np.cross(up, right), "up x right")
     register = up if right is None else right
-    axis = np.zeros(3) if register is None else _unit(given, "up" if right is None else "right")
+    axis = np.zeros(3) if register is None else _unit(register, "up" if right is None else "right")
     return _unit(preferred - preferred @ axis * axis, "look")
 
 
