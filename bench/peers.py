@@ -100,7 +100,7 @@ def tables(runs: list[Run], options: argparse.Namespace) -> str:
         f"{machine()}; "
         + ", ".join(f"{name} {version(name)}" for name in names)
         + f". Medians of {options.runs}: seconds of the whole process / of the step from arrays to voxels / peak memory"
-        + f", at most {options.seconds:g} s and {options.gigabytes:g} GB a run.",
+        + f", at most {options.seconds:g} s and {options.gigabytes:g} GB a run."
     ]
     for mesh in dict.fromkeys(run.mesh for run in runs):
         lines += ["", f"## {mesh}", "", "| tool | makes | " + " | ".join(f"{2**depth}³" for depth in OUR_DEPTHS) + " |"]

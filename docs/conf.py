@@ -27,13 +27,7 @@ import make_reference  # noqa: E402
 project = "voxrt"
 author = "the voxrt authors"
 release = voxrt.__version__
-extensions = [
-    "sphinx.ext.autodoc",
-    "sphinx.ext.autosummary",
-    "numpydoc",
-    "myst_parser",
-    "sphinx_gallery.gen_gallery",
-]
+extensions = ["sphinx.ext.autodoc", "sphinx.ext.autosummary", "numpydoc", "myst_parser", "sphinx_gallery.gen_gallery"]
 source_suffix = [".rst", ".md"]
 exclude_patterns = ["assets.md", "walk/pictures/*.md"]  # the first is a table for tests, the others are included
 highlight_language = "none"  # blocks that name no language are drawings and commands

@@ -59,10 +59,7 @@ def house() -> list[Part]:
     ]
     slope = [
         prism("x", [(y, z) for y, z in side], (4.5, 12.5))
-        for side in (
-            [(3.25, 8.75), (7, 5), (7.5, 5), (3.75, 8.75)],
-            [(3.25, 1.25), (3.75, 1.25), (7.5, 5), (7, 5)],
-        )
+        for side in ([(3.25, 8.75), (7, 5), (7.5, 5), (3.75, 8.75)], [(3.25, 1.25), (3.75, 1.25), (7.5, 5), (7, 5)])
     ]
     return [
         Part("knob", "dark", (box((8.625, 8.75), (1.625, 1.75), (front, front + EIGHTH)),)),
@@ -74,11 +71,7 @@ def house() -> list[Part]:
         Part("chimney", "brick", (box((9.75, 10.75), (4, 8.5), (6, 7)),)),
         Part("roof", "roof", tuple(slope)),
         Part("plinth", "stone", (box((4.875, 12.125), (GROUND, 0.875), (1.875, 8.125)),)),
-        Part(
-            "walls",
-            "wall",
-            (prism("x", [(GROUND, 2), (4, 2), (7, 5), (4, 8), (GROUND, 8)], (5, 12)),),
-        ),
+        Part("walls", "wall", (prism("x", [(GROUND, 2), (4, 2), (7, 5), (4, 8), (GROUND, 8)], (5, 12)),)),
     ]
 
 

@@ -103,12 +103,7 @@ def decode(
             "or holds more than an octree memory"
         )
     if verdict.fault:
-        facts = {
-            "word": int(words[verdict.address]),
-            "count": len(words),
-            "depth": limit,
-            "least": verdict.least_depth,
-        }
+        facts = {"word": int(words[verdict.address]), "count": len(words), "depth": limit, "least": verdict.least_depth}
         problem, fix = _PROBLEMS[verdict.fault].format(**facts), _FIXES[verdict.fault].format(**facts)
         raise RomError(f"{place(verdict.address, source, lines)}: {problem}; {fix}")
     report.flags.writeable = False

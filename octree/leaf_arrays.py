@@ -45,12 +45,7 @@ class Leaves:
 
 
 def leaves(
-    octree: Octree,
-    low: Corner = (0, 0, 0),
-    high: Corner | None = None,
-    *,
-    solid_only: bool = False,
-    chunk: int = 65536,
+    octree: Octree, low: Corner = (0, 0, 0), high: Corner | None = None, *, solid_only: bool = False, chunk: int = 65536
 ) -> Iterator[Leaves]:
     """Walk the leaves that overlap a box, whole (not clipped), in Morton order.
 

@@ -9,12 +9,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-_SPREADS = (
-    (16, 0x0000FF0000FF),
-    (8, 0x00F00F00F00F),
-    (4, 0x0C30C30C30C3),
-    (2, 0x249249249249),
-)
+_SPREADS = ((16, 0x0000FF0000FF), (8, 0x00F00F00F00F), (4, 0x0C30C30C30C3), (2, 0x249249249249))
 
 
 def morton(voxels: NDArray[np.int64]) -> NDArray[np.int64]:

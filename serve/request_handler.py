@@ -174,12 +174,7 @@ def _cast_ray(scene: Scene, frame: int, ray: CastRay) -> dict[str, Any] | None:
         return None
     point = origin + hits.parameter[0] * np.array(ray.direction)
     face = None if starts_inside else int(hits.face[0])
-    return {
-        "voxel": hits.voxel[0].tolist(),
-        "material": int(hits.material[0]),
-        "face": face,
-        "point": point.tolist(),
-    }
+    return {"voxel": hits.voxel[0].tolist(), "material": int(hits.material[0]), "face": face, "point": point.tolist()}
 
 
 class _ReportedProgress:

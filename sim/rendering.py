@@ -9,14 +9,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 import numpy as np
 
 from voxrt.octree import Rom, frame_octree
-from voxrt.octree.camera import (
-    BOUNCE_LIMIT,
-    DIRECTION_LIMIT,
-    PLAIN_LIGHTING,
-    SAMPLES,
-    lod_scale,
-    sample_cameras,
-)
+from voxrt.octree.camera import BOUNCE_LIMIT, DIRECTION_LIMIT, PLAIN_LIGHTING, SAMPLES, lod_scale, sample_cameras
 from voxrt.sim import _model
 from voxrt.sim.engine_arguments import palette_of, registers_of, shading_of
 from voxrt.sim.errors import SimulatorError

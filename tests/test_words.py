@@ -31,10 +31,7 @@ RATES = {
 NO_NOUNS = {"told", "said", "asked", "given"}
 """Words that no variable, parameter or function has for a name."""
 
-ALLOWED: dict[str, str] = {
-    "CHANGELOG.md": "it quotes former versions",
-    "tests/test_words.py": "it has the patterns",
-}
+ALLOWED: dict[str, str] = {"CHANGELOG.md": "it quotes former versions", "tests/test_words.py": "it has the patterns"}
 
 
 def own_texts() -> list[Path]:

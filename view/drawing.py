@@ -31,11 +31,7 @@ _GHOST = 0.15  # how much of the octants is seen where a ray is shown
 
 
 def draw(
-    panes: Sequence[Pane],
-    size: tuple[int, int],
-    *,
-    preview: Preview | None = None,
-    off_screen: bool,
+    panes: Sequence[Pane], size: tuple[int, int], *, preview: Preview | None = None, off_screen: bool
 ) -> tuple[pyvista.Plotter, list[pyvista.UnstructuredGrid]]:
     """Draw panes side by side, seen alike; or one, a preview beside it and the ray of the preview's pixel.
 

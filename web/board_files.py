@@ -14,14 +14,7 @@ import numpy as np
 
 from voxrt.board.designs import build
 from voxrt.board.designs.base_design import places
-from voxrt.board.designs.boot_table import (
-    CAMERA_WORDS,
-    CAMERAS,
-    CAMERAS_WORD,
-    OCTREE_MEMORY,
-    TABLE_WORDS,
-    boot_table,
-)
+from voxrt.board.designs.boot_table import CAMERA_WORDS, CAMERAS, CAMERAS_WORD, OCTREE_MEMORY, TABLE_WORDS, boot_table
 from voxrt.board.registers import MATERIALS, REGISTERS
 from voxrt.board.scene import Scene
 from voxrt.boards.beam import SCREEN, configuration_of

@@ -56,11 +56,7 @@ def build_hardware(name: str, jobs: int | None = None) -> Path:
         "-I", str(include), "-I", str(include / "vltstd"), "-I", str(generated.parent), "-I", str(BUILD / "include"),
         "-I", str(ROOT / "sim" / "src" / "rtl"),
     )  # fmt: skip
-    sources = [
-        *(include / name for name in RUN_TIME),
-        generated / "all.cc",
-        generated / "design.cc",
-    ]
+    sources = [*(include / name for name in RUN_TIME), generated / "all.cc", generated / "design.cc"]
     interface = Unit(ROOT / "web" / "src" / "hardware" / "interface.cpp", (*flags, f"-DVOXRT_MAKE_DESIGN=make_{name}"))
     module = BUILD / ("voxrt_hardware.wasm" if name == "tiny" else f"voxrt_hardware_{name}.wasm")
     return link(module, [*(Unit(source, flags) for source in sources), interface], jobs)
@@ -72,13 +68,7 @@ def verilate(root: Path, configuration: Configuration, generated: Path) -> None:
     declared = re.findall(r"parameter (?:\w+ +)+(\w+) *=", (RTL / f"{TOP}.sv").read_text())
     parameters = {name: values[name] for name in declared if name in values}
     parameters["BlockBits"] = configuration.simulation_block_bits
-    sources = [
-        HEADER,
-        *list_sources(),
-        RTL / "lint.vlt",
-        TEMPLATE,
-        Path(__file__),
-    ]
+    sources = [HEADER, *list_sources(), RTL / "lint.vlt", TEMPLATE, Path(__file__)]
     made_of = "".join([str(root), str(values), *(source.read_text() for source in sources)])
     fingerprint = hashlib.sha256(made_of.encode()).hexdigest()
     stamp = generated / "stamp"

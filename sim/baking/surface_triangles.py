@@ -30,9 +30,7 @@ def surface_triangles(scene: Scene, grid: Grid, geometry: Geometry) -> tuple[NDA
     return _bake.place_triangles([_arrays(mesh) for mesh in meshes.values()], objects, grid.origin, grid.voxel_size)
 
 
-def _arrays(
-    mesh: Mesh,
-) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.float64], NDArray[np.int32]]:
+def _arrays(mesh: Mesh) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.float64], NDArray[np.int32]]:
     positions = np.ascontiguousarray(mesh.positions, np.float64)
     normals = mesh.normals
     directions = np.zeros((0, 3)) if normals is None else np.ascontiguousarray(normals.vectors, np.float64)

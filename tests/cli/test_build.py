@@ -55,11 +55,7 @@ def test_json_is_all_that_stdout_gets_and_keeps_its_promise(process, folder):
     keys = {"outputs", "depth", "words", "blocks", "voxels", "materials", "warnings", "seconds", "render"}
     assert keys <= set(result)
     assert {"rays", "cycles", "words_read", "cycles_per_pixel", "words_per_ray", "seconds"} <= set(result["render"])
-    assert report.outputs == {
-        "mem": "out/house.mem",
-        "manifest": "out/house.json",
-        "preview": "out/house.preview.png",
-    }
+    assert report.outputs == {"mem": "out/house.mem", "manifest": "out/house.json", "preview": "out/house.preview.png"}
     manifest = json.loads((folder / "out/house.json").read_bytes())
     for key in ("depth", "words", "blocks", "voxels"):
         assert result[key] == manifest[key], key

@@ -75,10 +75,7 @@ def test_interrupted_it_leaves_the_old_file_and_nothing_else(voxrt, monkeypatch,
             raise KeyboardInterrupt
 
     making = plain_verilog.plain_verilog
-    monkeypatch.setattr(
-        "voxrt.cli.commands.core.plain_verilog",
-        lambda each, **_: making(each, progress=interrupt),
-    )
+    monkeypatch.setattr("voxrt.cli.commands.core.plain_verilog", lambda each, **_: making(each, progress=interrupt))
     before = sorted(Path().iterdir())
     finished = voxrt("core", "--config", "tiny", "--verilog", "tiny.v")
     assert finished.code == 130

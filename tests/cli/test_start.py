@@ -37,10 +37,7 @@ OTHER_WORK = {
         (["--help"], {*LIBRARIES, *RICH, *OTHER_WORK}),
         (["completion", "bash"], {*LIBRARIES, *RICH, *OTHER_WORK}),
         (["build", "--help"], {*LIBRARIES, *RICH, *OTHER_WORK}),
-        (
-            ["build", "house.obj", "-o", "out", "--depth", "4"],
-            {*LIBRARIES - {"numpy", "msgspec"}, *RICH, *OTHER_WORK},
-        ),
+        (["build", "house.obj", "-o", "out", "--depth", "4"], {*LIBRARIES - {"numpy", "msgspec"}, *RICH, *OTHER_WORK}),
         (["build", "planet.glb", "--json", "-q"], {*LIBRARIES - {"numpy", "msgspec"}, *RICH, *OTHER_WORK}),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, list) else "",

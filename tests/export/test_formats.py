@@ -31,10 +31,7 @@ def read(folder, suffix, data):
 @pytest.mark.parametrize(
     ("suffix", "data"),
     [
-        (
-            ".coe",
-            b"memory_initialization_radix=16;\nmemory_initialization_vector=\n00000001,\nFFFFFF00,\n00ABCDEF;\n",
-        ),
+        (".coe", b"memory_initialization_radix=16;\nmemory_initialization_vector=\n00000001,\nFFFFFF00,\n00ABCDEF;\n"),
         (
             ".mif",
             (

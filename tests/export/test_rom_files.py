@@ -20,12 +20,7 @@ RED = Material("red", (255, 0, 0))
 GLASS = Material("glass \N{SNOWMAN}", (1, 2, 3), mirror=True, authored=False)
 
 
-def rom(
-    name="scene",
-    cells=((0, 0, 0, 1), (1, 1, 1, 2)),
-    materials=(EMPTY, RED, GLASS),
-    grid=GRID,
-):
+def rom(name="scene", cells=((0, 0, 0, 1), (1, 1, 1, 2)), materials=(EMPTY, RED, GLASS), grid=GRID):
     cube = np.zeros((4, 4, 4), int)
     for x, y, z, material in cells:
         cube[x, y, z] = material

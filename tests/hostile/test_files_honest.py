@@ -59,9 +59,7 @@ def test_ply_texture_of_vertices(tmp_path, picture, names):
 
 def test_ply_texture_of_corners(tmp_path, picture):
     text = ply(
-        comments=picture,
-        of_face="property list uchar float texcoord\n",
-        face="3 0 1 2 6 0.5 0.25 0.5 0.25 0.5 0.25",
+        comments=picture, of_face="property list uchar float texcoord\n", face="3 0 1 2 6 0.5 0.25 0.5 0.25 0.5 0.25"
     )
     surface = voxelize.load(written(tmp_path, text, "a.ply")).objects[0].mesh.appearance
     assert sample(surface, np.array([0]), np.full((1, 3), 1 / 3))[0].tolist() == [0, 1, 0, 1]

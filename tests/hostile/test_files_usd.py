@@ -97,9 +97,7 @@ def test_whatever_ends_the_child_is_one_line(tmp_path, monkeypatch, name):
 
 def test_a_child_that_waits_for_ever_is_ended(tmp_path, monkeypatch):
     message = died(
-        tmp_path,
-        monkeypatch,
-        "import signal, time; signal.setitimer(signal.ITIMER_REAL, 0.2); time.sleep(600)",
+        tmp_path, monkeypatch, "import signal, time; signal.setitimer(signal.ITIMER_REAL, 0.2); time.sleep(600)"
     )
     assert "takes more than 4 seconds" in message
 

@@ -253,10 +253,7 @@ def test_malformed_and_excess_connections(run):
             new_connections_per_address_and_second=1000,
             handshake_seconds=0.5,
         )
-        async with (
-            served(loaded=scene(), limits=limits) as server,
-            open_client(server.url) as correct,
-        ):
+        async with served(loaded=scene(), limits=limits) as server, open_client(server.url) as correct:
             await correct.take_control()
 
             async def send_noise(length):

@@ -39,8 +39,7 @@ def rom_of(name, seed):
 
 
 @pytest.mark.parametrize(
-    ("engine", "opened"),
-    [("model", ModelDevice), ("tiny", TINY), ("lit", partial(open_rtl, "lit"))],
+    ("engine", "opened"), [("model", ModelDevice), ("tiny", TINY), ("lit", partial(open_rtl, "lit"))]
 )
 def test_swapped_scenes(engine, opened):
     device = opened_or_skipped(opened)

@@ -142,10 +142,7 @@ def test_an_instruction_set_that_is_not_there_is_refused():
 
 
 @settings(max_examples=300, deadline=None)
-@given(
-    colour=st.integers(0, 255),
-    direction=st.tuples(*[st.integers(-(2**20) + 1, 2**20 - 1)] * 3).filter(any),
-)
+@given(colour=st.integers(0, 255), direction=st.tuples(*[st.integers(-(2**20) + 1, 2**20 - 1)] * 3).filter(any))
 def test_the_shade_is_rounded_half_up(colour, direction):
     # One solid world seen from outside, along `direction`.
     words = np.array([0xFFFFFF01], np.uint32)

@@ -25,11 +25,7 @@ def room():
     return voxels
 
 
-WORLDS = {
-    "noise": worlds.noise(3, 0.15, 22),
-    "boxes": worlds.boxes(4, 9, 23),
-    "room": room(),
-}
+WORLDS = {"noise": worlds.noise(3, 0.15, 22), "boxes": worlds.boxes(4, 9, 23), "room": room()}
 SHADERS = {
     "flat": {"flat": True},
     "faces": {"brightness": (1, 37, 140, 255, 219, 0)},

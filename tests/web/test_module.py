@@ -61,11 +61,7 @@ def job(files: list[Path], rom: voxrt.Rom, looks: list[Lighting], depth: int) ->
     return {"files": [str(path) for path in files], "depth": depth, "fill": "auto", "frames": frames}
 
 
-EXAMPLES = {
-    "courtyard": ["courtyard.glb"],
-    "planet": ["planet.glb"],
-    "house": ["house.obj", "house.mtl"],
-}
+EXAMPLES = {"courtyard": ["courtyard.glb"], "planet": ["planet.glb"], "house": ["house.obj", "house.mtl"]}
 
 
 @pytest.mark.parametrize("depth", [5, 7, 9])

@@ -22,11 +22,7 @@ if TYPE_CHECKING:
     from fakes.browser import Browser
 
 
-@pytest.mark.parametrize(
-    "files",
-    [["house.obj", "house.mtl"], ["planet.glb"]],
-    ids=lambda files: files[0],
-)
+@pytest.mark.parametrize("files", [["house.obj", "house.mtl"], ["planet.glb"]], ids=lambda files: files[0])
 def test_dropped_files_are_shown_exactly(browser: Browser, files: list[str]) -> None:
     opened(browser)
     assert browser.until(shown("courtyard", 7))

@@ -24,13 +24,7 @@ class MaterialTable:
         self._ids: dict[Hashable, int] = {}
 
     def id_of(
-        self,
-        key: Hashable,
-        name: str,
-        colour: tuple[int, int, int],
-        *,
-        mirror: bool = False,
-        authored: bool = True,
+        self, key: Hashable, name: str, colour: tuple[int, int, int], *, mirror: bool = False, authored: bool = True
     ) -> int:
         """Return the id of a material. Its first use adds it to the table.
 

@@ -67,12 +67,7 @@ def _finished_mesh(one: LoadedMesh, materials: NDArray[np.uint8], rows: NDArray[
     if solid.all():
         return Mesh(one.positions, one.triangles, materials, surface, normals=one.normals)
     if surface is not None:
-        surface = SurfaceAppearance(
-            surface.entries,
-            surface.rows[solid],
-            surface.uv[solid],
-            surface.colours[solid],
-        )
+        surface = SurfaceAppearance(surface.entries, surface.rows[solid], surface.uv[solid], surface.colours[solid])
     triangles = one.triangles[solid]
     used = np.zeros(len(one.positions), dtype=np.bool_)  # an unused vertex must not stretch the scene's bounds
     used[triangles] = True

@@ -48,10 +48,7 @@ def triangulate_corners(
 
 
 def _fan_anchors(
-    positions: NDArray[np.float64],
-    counts: NDArray[np.integer],
-    starts: NDArray[np.int64],
-    corners: NDArray[np.integer],
+    positions: NDArray[np.float64], counts: NDArray[np.integer], starts: NDArray[np.int64], corners: NDArray[np.integer]
 ) -> tuple[NDArray[np.int64], list[tuple[int, NDArray[np.float64]]]]:
     """Return where each polygon's fan starts, and the concave polygons that no fan cuts, with their normals."""
     anchor = np.zeros(len(counts), dtype=np.int64)

@@ -31,10 +31,7 @@ class OutputFiles:
 
 
 def output_files(
-    name: str,
-    file_name: str | None,
-    output: str | os.PathLike[str] | None,
-    preview: str | os.PathLike[str] | bool,
+    name: str, file_name: str | None, output: str | os.PathLike[str] | None, preview: str | os.PathLike[str] | bool
 ) -> OutputFiles:
     """Return the files of a build, which can be written. `file_name`: that of the asset; None for one in memory.
 

@@ -8,18 +8,7 @@ from typing import Literal
 
 from voxrt.options.kinds import INTEGER, file, one_of, texts
 from voxrt.options.option import ARGUMENTS, nested, option
-from voxrt.options.shared import (
-    CONFIG,
-    DEPTH,
-    DIALECT,
-    HARDWARE,
-    MEMORY,
-    OUTPUT,
-    SCENE,
-    SIZE,
-    Dialect,
-    ReportOptions,
-)
+from voxrt.options.shared import CONFIG, DEPTH, DIALECT, HARDWARE, MEMORY, OUTPUT, SCENE, SIZE, Dialect, ReportOptions
 
 
 # A table: an option is its kind, its default and its group, then its text.

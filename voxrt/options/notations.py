@@ -23,13 +23,7 @@ _MOST_FRAMES = 4096  # of an animation
 _POSITION_LIMIT = 1 << 31  # in 1/16 voxel
 _MOST_WORDS = 1 << 31
 _TIMES = "xX\N{MULTIPLICATION SIGN}"
-_UNITS = {
-    "mm": "0.001",
-    "cm": "0.01",
-    "m": "1",
-    "in": "0.0254",
-    "ft": "0.3048",
-}
+_UNITS = {"mm": "0.001", "cm": "0.01", "m": "1", "in": "0.0254", "ft": "0.3048"}
 _LENGTH = re.compile(
     rf"([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|[-+]?(?:inf|nan))?\s*({'|'.join(_UNITS)})?", re.IGNORECASE
 )

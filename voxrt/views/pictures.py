@@ -59,10 +59,7 @@ class Picture:
 
 
 def render(
-    rom: Rom,
-    camera: Camera | None = None,
-    options: RenderOptions | None = None,
-    **keywords: Unpack[RenderKeywords],
+    rom: Rom, camera: Camera | None = None, options: RenderOptions | None = None, **keywords: Unpack[RenderKeywords]
 ) -> Frame:
     """Render a picture of a memory.
 

@@ -180,11 +180,7 @@ def _complete(
     above = np.cross(across, sight)
     step = float(np.linalg.norm(register))
     reach = min(step * focal_length(size), _REGISTER / np.abs(sight).max())
-    return (
-        look or _register(sight * reach),
-        right or _register(across * step),
-        up or _register(above * step),
-    )
+    return (look or _register(sight * reach), right or _register(across * step), up or _register(above * step))
 
 
 def _upright(sight: Vector) -> Vector:

@@ -76,13 +76,7 @@ def toml(tmp_path):
 def test_a_yard(toml):
     scene = toml(YARD)
     assert scene.name == "yard"
-    assert [one.name for one in scene.objects] == [
-        "tent/tent",
-        "well",
-        "box 3",
-        "pair/sphere 1",
-        "pair/prism",
-    ]
+    assert [one.name for one in scene.objects] == ["tent/tent", "well", "box 3", "pair/sphere 1", "pair/prism"]
     assert [one.name for one in scene.materials if one.authored] == ["empty", "stone", "deep water"]
     assert scene.materials[7].mirror
     assert scene.materials[0].colour == (159, 197, 232)

@@ -122,12 +122,7 @@ class _Builder:
                 )
                 return
             self._author.add_transformed(
-                name,
-                self._unplaced(node, where),
-                transform,
-                material=material,
-                collider=node.collider,
-                pow2=node.pow2,
+                name, self._unplaced(node, where), transform, material=material, collider=node.collider, pow2=node.pow2
             )
         except ValueError as error:
             raise self._checked.error((*where, shape), str(error), "correct the object") from None

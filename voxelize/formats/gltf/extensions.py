@@ -59,8 +59,5 @@ CONVERT_IMAGES = (
 )
 """How to convert unsupported image formats: glTF Transform's command line."""
 
-REPLACEMENTS = {
-    "KHR_texture_basisu": CONVERT_IMAGES,
-    "EXT_texture_avif": CONVERT_IMAGES,
-}
+REPLACEMENTS = {"KHR_texture_basisu": CONVERT_IMAGES, "EXT_texture_avif": CONVERT_IMAGES}
 """What to do about a required extension that is not supported."""

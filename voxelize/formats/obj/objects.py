@@ -15,10 +15,7 @@ if TYPE_CHECKING:
 
 
 def split_objects(
-    stem: str,
-    statements: Statements,
-    triangles: NDArray[np.int32],
-    faces: NDArray[np.int64],
+    stem: str, statements: Statements, triangles: NDArray[np.int32], faces: NDArray[np.int64]
 ) -> Iterator[tuple[str, NDArray[np.int64]]]:
     """Split a file's triangles into objects, in order of their first faces.
 

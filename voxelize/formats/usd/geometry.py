@@ -103,11 +103,7 @@ def _mesh(
 
 
 def _check_topology(
-    path: Path,
-    place: str,
-    positions: NDArray[np.float64],
-    counts: NDArray[np.int64],
-    corners: NDArray[np.int64],
+    path: Path, place: str, positions: NDArray[np.float64], counts: NDArray[np.int64], corners: NDArray[np.int64]
 ) -> None:
     problem = ""
     if (counts < 0).any() or int(counts.sum()) != len(corners):

@@ -61,10 +61,5 @@ def read_stage(
         raise AssetError(path, "shows nothing" + (f" ({reasons})" if reasons else ""), fix="check it with usdview")
     viewpoint = cameras[0] if cameras else None
     return Scene(
-        path.stem,
-        objects,
-        traversal.materials.table.materials(),
-        log.warnings(),
-        viewpoint=viewpoint,
-        cameras=cameras,
+        path.stem, objects, traversal.materials.table.materials(), log.warnings(), viewpoint=viewpoint, cameras=cameras
     )

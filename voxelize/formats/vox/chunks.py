@@ -249,11 +249,4 @@ def _material(content: _Reader, file: VoxFile) -> None:
         file.material_types[colour & 0xFF] = kind
 
 
-_PARSERS = {
-    "RGBA": _palette,
-    "nTRN": _transform,
-    "nGRP": _group,
-    "nSHP": _shape,
-    "LAYR": _layer,
-    "MATL": _material,
-}
+_PARSERS = {"RGBA": _palette, "nTRN": _transform, "nGRP": _group, "nSHP": _shape, "LAYR": _layer, "MATL": _material}

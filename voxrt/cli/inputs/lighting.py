@@ -21,9 +21,7 @@ def supported(lighting: voxrt.Lighting, features: AbstractSet[str]) -> voxrt.Lig
         return lighting
     warn((voxrt.SceneWarning("light", f"left out, since the board has no hardware for it: {', '.join(missing)}"),))
     return replace(
-        lighting,
-        on=lighting.on and "light" in features,
-        bounces=lighting.bounces if "mirrors" in features else 0,
+        lighting, on=lighting.on and "light" in features, bounces=lighting.bounces if "mirrors" in features else 0
     )
 
 

@@ -25,10 +25,7 @@ need_assets()
         ("gltf/bevy/PalmTree/PalmTree.gltf", 10124, (392, 4.86, 392), 3),
         ("gltf/Vulkan-Assets/retroufo.glb", 16428, (146, 89.3, 146), 7),
         ("gltf/glTF-Transform/functions/test/in/ShapeCollection.glb", 3542, (14.5, 2, 2.5), 1),
-        (
-            "gltf/draco/KhronosSampleModels/SimpleSparseAccessor/glTF/SimpleSparseAccessor.gltf",
-            *(12, (6, 4, 0), 1),
-        ),
+        ("gltf/draco/KhronosSampleModels/SimpleSparseAccessor/glTF/SimpleSparseAccessor.gltf", *(12, (6, 4, 0), 1)),
         ("gltf/gltf-pipeline/meshopt-fallback/meshopt-fallback.gltf", 60, (2, 4.71, 2), 2),
         ("gltf/manifold/mengerSponge3.glb", 21598, (1, 1, 1), 0),
         ("gltf/draco/Box/glTF_Binary/Box_Draco.glb", 12, (1, 1, 1), 1),

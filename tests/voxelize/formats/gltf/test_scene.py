@@ -185,7 +185,7 @@ def test_materials_get_unique_names(tmp_path):
     writer.show(mesh=writer.mesh(TRIANGLE))
     scene = load(writer.save(tmp_path / "a.glb"))
     assert [material.name for material in scene.materials] == [
-        *("empty", "a", "a (2)", "materials[2]", "default", "empty (2)", "default (2)"),
+        *("empty", "a", "a (2)", "materials[2]", "default", "empty (2)", "default (2)")
     ]
 
 

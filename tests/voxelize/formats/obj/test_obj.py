@@ -177,12 +177,7 @@ def test_what_is_not_honoured_is_counted(obj):
         "mtllib model.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 2\np 1\ncurv 0 1\nnonsense 1\n",
         "newmtl a\nKd 1 0 0\nmap_Kd a.png\nmap_d b.png\n",
     )
-    assert kinds(scene) == {
-        "no-area": 2,
-        "free-form": 1,
-        "unknown-statement": 1,
-        "missing-texture": 2,
-    }
+    assert kinds(scene) == {"no-area": 2, "free-form": 1, "unknown-statement": 1, "missing-texture": 2}
     assert scene.materials[1].colour == (255, 0, 0)
 
 

@@ -98,10 +98,7 @@ def test_vertex_colours_of_0_to_255_and_beside_a_weight(obj):
 def test_faces_without_colour_keep_their_material(obj):
     text = "v 0 0 0 0 0 1\nv 1 0 0 0 0 1\nv 0 1 0 0 0 1\nv 5 0 0\nv 6 0 0\nv 5 1 0\nf 1 2 3\nusemtl plain\nf 4 5 6\n"
     scene = obj("mtllib model.mtl\n" + text, "newmtl plain\nKd 0 1 0\n")
-    assert {(one.name, one.colour) for one in scene.materials[1:]} == {
-        ("plain", GREEN),
-        ("vertex colours", BLUE),
-    }
+    assert {(one.name, one.colour) for one in scene.materials[1:]} == {("plain", GREEN), ("vertex colours", BLUE)}
     (one,) = scene.objects
     assert [scene.materials[number].colour for number in one.mesh.materials] == [BLUE, GREEN]
     assert one.mesh.appearance is None

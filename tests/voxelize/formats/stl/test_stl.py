@@ -53,11 +53,7 @@ def test_corners_at_one_place_become_one_vertex(stl):
 
 def test_attributes_and_trailing_bytes_are_counted(stl):
     scene = stl(binary(ONE, attribute=7, tail=b"more"))
-    assert kinds(scene) == {
-        "trailing-bytes": 4,
-        "stl-attribute": 1,
-        "default-material": 1,
-    }
+    assert kinds(scene) == {"trailing-bytes": 4, "stl-attribute": 1, "default-material": 1}
 
 
 @pytest.mark.parametrize(

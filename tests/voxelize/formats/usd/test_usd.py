@@ -8,14 +8,7 @@ from oracles.sound_scenes import kinds, read_or_refused
 from oracles.surfaces import bounds, scene_triangles, volume
 from oracles.usd_in_process import load_usd
 
-from voxrt.voxelize import (
-    AssetError,
-    BoxCollider,
-    DoesNotFitError,
-    HullCollider,
-    MeshCollider,
-    SphereCollider,
-)
+from voxrt.voxelize import AssetError, BoxCollider, DoesNotFitError, HullCollider, MeshCollider, SphereCollider
 
 CUBE = """
     point3f[] points = [(0,0,0),(1,0,0),(1,1,0),(0,1,0),(0,0,1),(1,0,1),(1,1,1),(0,1,1)]
