@@ -18,6 +18,10 @@ class QuietHandler(SimpleHTTPRequestHandler):
     def log_message(self, *_: object) -> None:
         self.paths.append(self.path)
 
+    def end_headers(self) -> None:
+        self.send_header("Cache-Control", "no-store")  # a test sees each path that its page asks for
+        super().end_headers()
+
 
 @pytest.fixture(scope="session")
 def address():

@@ -148,4 +148,5 @@ def test_axe_finds_no_fault(browser: Browser, dark: bool) -> None:
     found = browser.run(
         "return window.faults.map(one => [one.id, one.help, one.nodes.map(node => node.html.slice(0, 200))])"
     )
+    browser.theme(dark=True)
     assert found == []
