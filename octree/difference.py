@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from voxrt.octree import _native
 from voxrt.octree.octree import Octree
-from voxrt.octree.query import Corner, as_bounds
+from voxrt.octree.query import Corner
 from voxrt.voxelize.arguments import instance
 
 
@@ -76,8 +76,7 @@ def diff(first: Octree, second: Octree) -> Difference:
     Difference(appeared=1, vanished=0, recoloured=1, bounds=((0, 0, 0), (2, 3, 4)))
     """
     refuse_other_depth(first, second)
-    found = _native.diff(first.words, second.words, first.depth)
-    return Difference(found.appeared, found.vanished, found.recoloured, as_bounds(found.bounds))
+    return Difference(*_native.diff(first.words, second.words, first.depth))
 
 
 def differing_regions(first: Octree, second: Octree) -> tuple[Region, ...]:
@@ -107,12 +106,7 @@ def differing_regions(first: Octree, second: Octree) -> tuple[Region, ...]:
     return tuple(
         Region(((x, y, z), (end_x, end_y, end_z)), appeared, vanished, recoloured)
         for (x, y, z), (end_x, end_y, end_z), appeared, vanished, recoloured in zip(
-            found.low.tolist(),
-            found.high.tolist(),
-            found.appeared.tolist(),
-            found.vanished.tolist(),
-            found.recoloured.tolist(),
-            strict=True,
+            *(column.tolist() for column in found), strict=True
         )
     )
 

@@ -51,5 +51,4 @@ def surface_change(first: Octree, second: Octree) -> SurfaceChange:
     50.0
     """
     refuse_other_depth(first, second)
-    found = _native.surface_change(first.words, second.words, first.depth)
-    return SurfaceChange(surface=found.surface, changed=found.changed)
+    return SurfaceChange(*_native.surface_change(first.words, second.words, first.depth))

@@ -16,6 +16,7 @@ from voxrt import sim
 from voxrt.octree.camera import Camera
 from voxrt.rtl.configurations import read_configurations
 from voxrt.sim import _model
+from voxrt.sim.engine_arguments import registers_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -76,7 +77,7 @@ def fit_beam(
     raises SimulatorError if that ray tracer is missing, has no such lanes, or cannot hold the scene.
     """
     config = configuration_of(tracer.lanes, tracer.ray_clocks, lighting)
-    registers = np.array([(c.position, c.look, c.right, c.up) for c in cameras], dtype=np.int32)
+    registers = np.array([registers_of(camera) for camera in cameras])
     search = _model.BeamSearch(registers, tracer.clock_hz, tracer.buffer_lines)
     progress(0, search.total)
     while not search.ended:

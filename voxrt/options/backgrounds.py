@@ -14,19 +14,9 @@ BACKGROUNDS: dict[str, tuple[int, int, int]] = {"dark": (24, 28, 36), "light": (
 
 
 def read_background(name: str, value: object) -> Background:
-    """Return the background that is meant.
+    """Return the background that is meant: ``"transparent"``, a name, ``"#rrggbb"``, or three numbers of 0 … 255.
 
-    Parameters
-    ----------
-    name
-        What errors call it.
-    value
-        ``"transparent"``, one of :data:`BACKGROUNDS`, ``"#rrggbb"``, or three numbers of 0 … 255.
-
-    Raises
-    ------
-    ValueError
-        It is none of these.
+    ValueError, which calls it `name`, if it is none of these.
 
     Examples
     --------

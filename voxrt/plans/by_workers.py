@@ -45,22 +45,12 @@ _LEAST_SIDE = 512
 
 @dataclass(frozen=True, slots=True)
 class ClusterProgress:
-    """How far a cluster is with a build.
+    """How far a cluster is with a build."""
 
-    Attributes
-    ----------
-    done, tiles
-        Finished tiles, and all.
-    workers
-        Workers that are connected.
-    bytes
-        Bytes of the finished tiles.
-    """
-
-    done: int
-    tiles: int
-    workers: int
-    bytes: int
+    done: int  # finished tiles
+    tiles: int  # all of them
+    workers: int  # that are connected
+    bytes: int  # of the finished tiles
 
 
 def run_by_workers(

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from voxrt.building.fitting import BudgetFit
     from voxrt.building.result import BuildResult
+    from voxrt.cli.results.memory_results import InfoResult
     from voxrt.sim import Camera, RenderCost
     from voxrt.views.pictures import Picture
 
@@ -223,12 +224,6 @@ def camera_entry(camera: Camera) -> CameraEntry:
     return CameraEntry((x / 16, y / 16, z / 16), camera.look, camera.right, camera.up)
 
 
-def print_json(result: msgspec.Struct | list[BuildReport] | list[RenderResult]) -> None:
-    """Print a result on standard output.
-
-    Raises
-    ------
-    OutputError
-        Standard output cannot be written to, other than because nobody reads it any more.
-    """
+def print_json(result: msgspec.Struct | InfoResult | list[BuildReport] | list[RenderResult]) -> None:
+    """Print a result on standard output, as :func:`print_answer` does."""
     print_answer(msgspec.json.format(msgspec.json.encode(result), indent=2).decode() + "\n")

@@ -77,10 +77,7 @@ def tabulate(heads: tuple[str, ...], rows: list[tuple[str, ...]], *, answer: boo
 def print_answer(text: str) -> None:
     """Print text that was asked for on standard output.
 
-    Raises
-    ------
-    OutputError
-        Standard output cannot be written to, other than because nobody reads it any more.
+    OutputError if standard output cannot be written to, other than because nobody reads it any more.
     """
     try:
         sys.stdout.write(text.encode(sys.stdout.encoding, "backslashreplace").decode(sys.stdout.encoding))
