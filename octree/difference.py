@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from voxrt.octree import _native
 from voxrt.octree.octree import Octree
-from voxrt.octree.query import Corner
+from voxrt.octree.query import Corner  # noqa: TC001 - msgspec resolves the annotations of this module
 from voxrt.voxelize.arguments import instance
 
 

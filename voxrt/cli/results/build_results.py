@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from voxrt.building.fitting import BudgetFit
     from voxrt.building.result import BuildResult
-    from voxrt.cli.results.memory_results import InfoResult
+    from voxrt.export import RomInfo
     from voxrt.sim import Camera, RenderCost
     from voxrt.views.pictures import Picture
 
@@ -224,6 +224,6 @@ def camera_entry(camera: Camera) -> CameraEntry:
     return CameraEntry((x / 16, y / 16, z / 16), camera.look, camera.right, camera.up)
 
 
-def print_json(result: msgspec.Struct | InfoResult | list[BuildReport] | list[RenderResult]) -> None:
+def print_json(result: msgspec.Struct | RomInfo | list[BuildReport] | list[RenderResult]) -> None:
     """Print a result on standard output, as :func:`print_answer` does."""
     print_answer(msgspec.json.format(msgspec.json.encode(result), indent=2).decode() + "\n")
