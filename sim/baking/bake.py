@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.octree import Octree, Rom
+from voxrt.octree.morton import positions
 from voxrt.sim import _bake
 from voxrt.sim.baking.daylight import Daylight, sky_directions, sun_direction
 from voxrt.sim.baking.surface_triangles import surface_triangles
@@ -97,19 +98,10 @@ def bake_light(
     lit = _bake.light_voxels(
         surface.voxels, surface.cells, sun.received, sky.received, sky.full, _fields(rom), daylight.sun, daylight.sky
     )
-    voxels = _positions(surface.brick_codes, lit.rows.astype(np.int64))
+    rows = lit.rows.astype(np.int64)
+    voxels = positions(surface.brick_codes[rows >> 9].astype(np.int64) << 9 | rows & 511)
     return BakedLight(rom, voxels, lit.sun, lit.sky, lit.colours, surface, lit.rows)
 
 
 def _fields(rom: Rom) -> list[tuple[str, tuple[int, int, int], bool, bool]]:
     return [(one.name, one.colour, one.mirror, one.authored) for one in rom.materials]
-
-
-def _positions(codes: NDArray[np.uint64], rows: NDArray[np.int64]) -> NDArray[np.int32]:
-    """Return voxel coordinates from rows of cells: int32, shape (N, 3)."""
-    code = codes[rows >> 9].astype(np.int64) << 9 | rows & 511
-    found = np.zeros((len(rows), 3), np.int32)
-    for bit in range(16):
-        for axis in range(3):
-            found[:, axis] |= (code >> (3 * bit + axis) & 1).astype(np.int32) << bit
-    return found
