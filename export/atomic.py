@@ -45,12 +45,8 @@ def write_together(files: Mapping[Path, bytes | Iterable[bytes] | None]) -> None
 
     They change places in their order. Sets whose first files stand in one folder change one after another, whoever
     writes them. A process that is killed in the microseconds between two renamings leaves the rest of the set under
-    the temporary names, where :func:`staged_files` finds it.
-
-    Raises
-    ------
-    OSError
-        A file cannot be written; all old ones are then untouched and nothing new stays.
+    the temporary names, where :func:`staged_files` finds it. After an OSError all old files are untouched and nothing
+    new stays.
     """
     targets = {_followed(path): data for path, data in files.items()}
     with ExitStack() as stack:

@@ -141,10 +141,7 @@ def convert(blob: Blob, target: Path | str, *, dialect: str = "report") -> tuple
 def _with_known_provenance(blob: Blob, target: Path, dialect: str) -> Blob:
     """Complete what is known of a memory by the manifest that its words have where they go.
 
-    Raises
-    ------
-    FileExistsError
-        The manifest there belongs to another file, with other words.
+    FileExistsError where the manifest there belongs to another file, with other words.
     """
     path = target.with_suffix(".json")
     try:

@@ -13,7 +13,7 @@ import numpy as np
 from voxrt.octree import Octree, Rom
 from voxrt.octree.morton import positions
 from voxrt.sim import _bake
-from voxrt.sim.baking.daylight import Daylight, sky_directions, sun_direction
+from voxrt.sim.baking.daylight import Daylight
 from voxrt.sim.baking.surface_triangles import surface_triangles
 from voxrt.voxelize import Material
 from voxrt.voxelize.arguments import instance, whole
@@ -93,7 +93,7 @@ def bake_light(
     surface = _bake.measure_surface(words, depth, corners, normals, threads)
     sun, sky = (
         _bake.receive_light(words, depth, surface.origins, surface.normals, one.steps, one.units, one.weights, threads)
-        for one in (sun_direction(daylight), sky_directions(daylight.samples))
+        for one in (_bake.sun_direction(daylight.sun), _bake.sky_directions(daylight.samples))
     )
     lit = _bake.light_voxels(
         surface.voxels, surface.cells, sun.received, sky.received, sky.full, _fields(rom), daylight.sun, daylight.sky

@@ -120,19 +120,6 @@ def fit_frames(
     return BeamFit(0, cycles, 0.0, SCREEN_HZ / max(1, screens))
 
 
-def beam_lead(rows: Sequence[float], line: float, scale: int, buffer_lines: int) -> float:
-    """Return by how many lines of the screen each row of a picture is early, at least; negative where one is late.
-
-    `rows` has the cycles that each row takes, `line` those of a line of the screen. A row is shown on 2**scale lines.
-
-    Examples
-    --------
-    >>> beam_lead([1000.0] * 480, 2400, 0, 16) > 0, beam_lead([2500.0] * 480, 2400, 0, 16) > 0
-    (True, False)
-    """
-    return _model.beam_lead(rows, line, scale, buffer_lines)
-
-
 def configuration_of(lanes: int, ray_clocks: int, lighting: Lighting) -> str:
     """Name the verilated configuration with these lanes, a memory of one port per lane, and the features."""
     wanted = {"Lanes": lanes, "RayClocks": ray_clocks, "MemoryForm": 0}
