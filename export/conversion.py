@@ -14,7 +14,7 @@ from voxrt.export.manifest import read_manifest
 from voxrt.export.provenance import Provenance
 from voxrt.export.rom_files import other_words, read_words, words_crc32, write_words
 from voxrt.export.vox import read_vox
-from voxrt.export.word_formats import WORD_SUFFIXES
+from voxrt.export.word_file import WORD_SUFFIXES
 from voxrt.octree import RomError
 
 if TYPE_CHECKING:

@@ -18,8 +18,7 @@ from voxrt.export.blob import Blob
 from voxrt.export.manifest import make_manifest, manifest_bytes, read_manifest
 from voxrt.export.palette import default_materials
 from voxrt.export.provenance import Provenance
-from voxrt.export.word_file import mem_crc32
-from voxrt.export.word_formats import WORD_SUFFIXES, format_words, read_word_file
+from voxrt.export.word_file import WORD_SUFFIXES, format_words, mem_crc32, read_word_file
 from voxrt.octree import Octree, Rom, RomError, census, check_roots, decode, detect_dialect, encode, with_means
 from voxrt.octree.dialects import as_dialect
 from voxrt.voxelize import SceneWarning

@@ -20,9 +20,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.octree import _native
-from voxrt.octree.difference import diff
+from voxrt.octree.difference import SurfaceChange, diff, surface_change
 from voxrt.octree.octree import Octree
-from voxrt.octree.surface import SurfaceChange, surface_change
 from voxrt.voxelize import DoesNotFitError
 from voxrt.voxelize.arguments import instance, whole, whole_array
 

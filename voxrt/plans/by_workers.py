@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
-from voxrt.plans.open_workers import open_workers
 from voxrt.plans.tile_making import block_voxelizer, tiles_key
 from voxrt.plans.tile_store import TileStore, sum_tallies
 from voxrt.plans.tile_tasks import TileJob, inherited_scene, make_tile, merge_tiles
+from voxrt.plans.workers import open_workers
 from voxrt.sources.source import open_source
 
 if TYPE_CHECKING:
