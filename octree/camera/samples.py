@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.octree.camera.camera import DIRECTION_LIMIT, REGISTER_LIMIT, Triple
+from voxrt.octree.camera.camera import DIRECTION_LIMIT, REGISTER_LIMIT, as_triple
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -48,7 +48,7 @@ def sample_cameras(camera: Camera, size: tuple[int, int], samples: int) -> tuple
     longest = max(int(np.abs(moved).max()) for moved in looks)
     if longest >= REGISTER_LIMIT:
         looks = [np.sign(moved) * (np.abs(moved) * (REGISTER_LIMIT - 1) // longest) for moved in looks]
-    return tuple(replace(camera, look=_triple(moved), right=_triple(right), up=_triple(up)) for moved in looks)
+    return tuple(replace(camera, look=as_triple(moved), right=as_triple(right), up=as_triple(up)) for moved in looks)
 
 
 def average_samples(pictures: Iterable[NDArray[np.uint8]]) -> NDArray[np.uint8]:
@@ -87,11 +87,6 @@ def _room(camera: Camera, size: tuple[int, int]) -> int:
     reach = rows[0] + rows[1] * (width // 2 + 1) + rows[2] * (height // 2 + 1)
     largest, longest = int(rows.max()), int(reach.max())
     return max(1, min((REGISTER_LIMIT - 1) // max(1, largest), (DIRECTION_LIMIT - 1) // max(1, longest)))
-
-
-def _triple(values: NDArray[np.int64]) -> Triple:
-    x, y, z = values.tolist()
-    return x, y, z
 
 
 def _encoded(light: NDArray[np.int64], count: NDArray[np.int64]) -> NDArray[np.uint8]:

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
-from voxrt.plans.tile_making import block_voxelizer, tiles_key
 from voxrt.plans.tile_store import TileStore, sum_tallies
-from voxrt.plans.tile_tasks import TileJob, inherited_scene, make_tile, merge_tiles
+from voxrt.plans.tile_tasks import TileJob, block_voxelizer, inherited_scene, make_tile, merge_tiles, tiles_key
 from voxrt.plans.workers import open_workers
 from voxrt.sources.source import open_source
 

@@ -54,19 +54,12 @@ nb::object bind_build(unsigned depth, const Vector<std::uint64_t>& brick_codes,
     require(octant_levels.shape(0) == octants && octant_materials.shape(0) == octants,
             "the octant arrays differ in length");
     require(threads >= 0 && threads <= 1024, "threads must be 0 ... 1024");
-    const voxelize::VoxelsView view{depth,
-                                    bricks,
-                                    brick_codes.data(),
-                                    brick_masks.data(),
-                                    brick_materials.data(),
-                                    brick_rows.data(),
-                                    cells.shape(0),
-                                    cells.data(),
-                                    octants,
-                                    octant_codes.data(),
-                                    octant_levels.data(),
-                                    octant_materials.data()};
-    return words_to_numpy(run([&] { return build(view, threads); }));
+    return words_to_numpy(run([&] {
+        return build({depth, bricks, brick_codes.data(), brick_masks.data(), brick_materials.data(), brick_rows.data(),
+                      cells.shape(0), cells.data(), octants, octant_codes.data(), octant_levels.data(),
+                      octant_materials.data()},
+                     threads);
+    }));
 }
 
 nb::object bind_build_dense(const Volume& cells, unsigned depth) {

@@ -13,9 +13,8 @@ import voxrt
 from voxrt.cli.inputs.lighting import supported
 from voxrt.cli.results.bitstream_results import BitstreamResult, bitstream_result
 from voxrt.cli.results.build_results import print_json
-from voxrt.cli.terminal.budget_messages import budget_loss, budget_text
 from voxrt.cli.terminal.errors import UsageError
-from voxrt.cli.terminal.messages import summarize, warn
+from voxrt.cli.terminal.messages import budget_loss, budget_text, summarize, warn
 from voxrt.cli.terminal.progress import build_bar, stage_bar, transfer_bar
 from voxrt.options.notations import find_board
 from voxrt.outputs import check_folder, writing
