@@ -13,7 +13,7 @@ import voxrt
 from voxrt.boards.beam import SCREEN, SCREEN_HZ, BoardTracer, fit_beam, fit_frames
 from voxrt.octree.camera import Camera, look_at
 from voxrt.sim import _model
-from voxrt.views.orbit import orbit
+from voxrt.views.viewpoint import orbit
 
 BUFFER_LINES, LINES = 16, 525  # of the boards: board/designs/board_pkg.sv
 BANDS = 12

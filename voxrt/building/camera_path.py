@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 from voxrt import sim
 from voxrt.errors import ToolError
-from voxrt.plans.workers import in_order, open_workers
+from voxrt.plans.open_workers import open_workers
+from voxrt.plans.workers import in_order
 from voxrt.views.pictures import render
 from voxrt.views.viewpoint import ViewpointError, aim_camera
 

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
+from voxrt.plans.open_workers import open_workers
 from voxrt.plans.tile_store import TileStore, sum_tallies
 from voxrt.plans.tile_tasks import TileJob, block_voxelizer, inherited_scene, make_tile, merge_tiles, tiles_key
-from voxrt.plans.workers import open_workers
 from voxrt.sources.source import open_source
 
 if TYPE_CHECKING:

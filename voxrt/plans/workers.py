@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeVar
 
@@ -77,22 +76,3 @@ def in_order(completed: Iterator[tuple[int, T]]) -> Iterator[T]:
         while following in early:
             yield early.pop(following)
             following += 1
-
-
-@contextmanager
-def open_workers(scheduler: str | None, workers: int | None, *, remedy: str) -> Iterator[Workers]:
-    """Connect to a cluster where a scheduler is named, or take so many processes, or this one where none are asked for.
-
-    `remedy` is what errors say to do where the cluster is lost. ToolError if there is none.
-    """
-    if scheduler is not None:
-        from voxrt.plans.dask_workers import connected  # noqa: PLC0415 - the extra `cluster`
-
-        with connected(scheduler, remedy) as cluster:
-            yield cluster
-    elif workers is not None:
-        from voxrt.plans.local_workers import LocalWorkers  # noqa: PLC0415 - slow to import, and few builds need it
-
-        yield LocalWorkers(workers)
-    else:
-        yield Workers()

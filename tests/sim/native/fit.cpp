@@ -15,7 +15,6 @@
 #include <voxrt/sim/views/beam.h>
 #include <voxrt/sim/views/fit_views.h>
 #include <voxrt/sim/views/framing.h>
-#include <voxrt/sim/views/orbit.h>
 #include <voxrt/sim/views/similarity.h>
 
 #include <array>

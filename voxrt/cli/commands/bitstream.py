@@ -30,7 +30,7 @@ def run(options: BitstreamCommand) -> None:
     from voxrt.boards.beam import SCREEN, SMALL, fit_beam, fit_frames  # noqa: PLC0415
     from voxrt.boards.bitstream import board_names, load_bitstream, make_bitstream  # noqa: PLC0415 - NumPy comes with it
     from voxrt.boards.board_scenes import board_scene  # noqa: PLC0415
-    from voxrt.views.orbit import orbit  # noqa: PLC0415
+    from voxrt.views.viewpoint import orbit  # noqa: PLC0415
 
     if options.seed is not None and not options.rebuild:
         raise UsageError("--seed is of the placement, which --rebuild makes; give both")

@@ -77,7 +77,7 @@ def _check_fit(scene: Scene, board: dict[str, Any]) -> None:
 def _write_serial(path: Path, scene: Scene, port: str, progress: Progress, *, dry_run: bool) -> None:
     """Let the board at a serial line show the scene and turn, as from its bitstream."""
     from voxrt.boards.beam import SCREEN, BoardTracer, fit_beam  # noqa: PLC0415
-    from voxrt.views.orbit import orbit  # noqa: PLC0415
+    from voxrt.views.viewpoint import orbit  # noqa: PLC0415
 
     rom = voxrt.read_any(path)[0].rom
     with board_errors(), closing(open_serial_device(port)) as device:

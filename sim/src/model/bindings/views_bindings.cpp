@@ -1,7 +1,7 @@
 #include "views_bindings.h"
 
 #include "../views/beam.h"
-#include "../views/orbit.h"
+#include "../views/framing.h"
 
 #include <voxrt/voxelize/bindings/python.h>
 
@@ -75,7 +75,7 @@ nb::object fit_of(const BeamSearch& search) {
 void bind_views(nb::module_& m) {
     band_type = NamedTuple(m, "Band", {"camera", "width", "rows"}, "Rows of a picture, as a picture of its own.");
     m.def("orbit", &orbit_of, nb::arg("points"), nb::arg("width"), nb::arg("height"), nb::arg("count"),
-          "Cameras around points, float64 (N, 3), voxels: their registers, int32, shape (count, 4, 3). orbit.h");
+          "Cameras around points, float64 (N, 3), voxels: their registers, int32, shape (count, 4, 3). framing.h");
     m.def("beam_lead", &beam_lead, nb::arg("rows"), nb::arg("line"), nb::arg("scale"), nb::arg("buffer_lines"),
           "beam.h");
     nb::class_<BeamSearch>(m, "BeamSearch", "The largest pictures that a board traces in time: beam.h.")
