@@ -14,7 +14,6 @@ import numpy as np
 from voxrt import octree, sim
 from voxrt.octree import Rom
 from voxrt.octree.camera import THREE_QUARTER, Camera, Lighting, eye_that_sees, focal_length, look_at
-from voxrt.sim import _model
 from voxrt.voxelize.arguments import instance, whole, whole_array
 
 if TYPE_CHECKING:
@@ -147,6 +146,8 @@ def orbit(rom: Rom, size: tuple[int, int], count: int = 128, *, roots: Sequence[
     >>> cameras[0].position[1] == cameras[2].position[1], cameras[0].look == cameras[2].look
     (True, False)
     """
+    from voxrt.sim import _model  # noqa: PLC0415 - builds do without
+
     instance("rom", rom, Rom)
     count = whole("count", count, 1, 4096)
     width, height = whole_array("size", size, (2,), np.int64, low=1, high=1 << 14).tolist()

@@ -1,7 +1,6 @@
 #include "../budget/fit_candidates.h"
 #include "../budget/sight_costs.h"
 #include "../build/coarsen.h"
-#include "../pool/breadth_first.h"
 #include "../pool/shared_size.h"
 #include "../sight/hidden.h"
 #include "../sight/interior.h"
@@ -34,11 +33,7 @@ nb::object bind_encoded_rows(const Vector<Word>& words, unsigned block_bits) {
 std::size_t bind_shared_words(const Vector<Word>& words, unsigned depth) { return run_on(words, depth, shared_words); }
 
 nb::object bind_coarsen(const Vector<Word>& words, unsigned depth, unsigned level) {
-    return words_to_numpy(run_on(words, depth, [&](const Memory& memory) {
-        BlockPool pool;
-        const Node root = coarsen(memory, level, pool);
-        return breadth_first_words(pool, root);
-    }));
+    return words_to_numpy(run_on(words, depth, [&](const Memory& memory) { return coarsened(memory, level); }));
 }
 
 nb::object bind_fit_candidates(const Vector<Word>& words, unsigned depth, std::size_t limit,

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from voxrt.building.fitting import BudgetFit
     from voxrt.building.result import BuildResult
     from voxrt.export import RomInfo
-    from voxrt.sim import Camera, RenderCost
+    from voxrt.sim import CacheCost, Camera, RenderCost
     from voxrt.views.pictures import Picture
 
 
@@ -200,15 +200,12 @@ def render_result(picture: Picture, file: Path | None = None, wrong_pixels: int 
         seconds=cost.seconds,
         camera=camera_entry(camera),
         outputs=msgspec.UNSET if file is None else {"picture": name_file(file)},
-        cache=msgspec.UNSET if cost.cache is None else cache_entry(cost),
+        cache=msgspec.UNSET if cost.cache is None else _cache_entry(cost, cost.cache),
         wrong_pixels=msgspec.UNSET if wrong_pixels is None else wrong_pixels,
     )
 
 
-def cache_entry(cost: RenderCost) -> CacheEntry:
-    """Return what a picture cost at the caches, for programs."""
-    cache = cost.cache
-    assert cache is not None
+def _cache_entry(cost: RenderCost, cache: CacheCost) -> CacheEntry:
     return CacheEntry(
         l1_hits=cache.l1_hits,
         l2_hits=cache.l2_hits,

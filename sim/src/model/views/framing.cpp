@@ -1,7 +1,6 @@
 #include "framing.h"
 
 #include <voxrt/octree/build/coarsen.h>
-#include <voxrt/octree/pool/breadth_first.h>
 #include <voxrt/octree/query/leaves.h>
 
 #include <algorithm>
@@ -115,10 +114,8 @@ Camera scaled(const Axes& axes, double focal, int32_t width, int32_t height) {
 
 std::vector<Point> outline_points(const octree::VerifiedMemory& memory) {
     const unsigned depth = memory.depth();
-    octree::BlockPool pool;
-    const octree::Node root =
-        octree::coarsen(memory.memory(), depth > kOutlineLevels ? depth - kOutlineLevels : 0, pool);
-    const octree::Words words = octree::breadth_first_words(pool, root);
+    const unsigned level = depth > kOutlineLevels ? depth - kOutlineLevels : 0;
+    const octree::Words words = octree::coarsened(memory.memory(), level);
     const int64_t side = int64_t{1} << depth;
     std::vector<Point> points;
     const auto add = [&points](const auto& corner, double size) {
