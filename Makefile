@@ -184,26 +184,18 @@ ifneq ($(SIM_AVX2),)
 endif
 	$(AR) rcs $@ $(@:.a=)/*.o
 
-build/sanitize/%/fit: tests/sim/native/fit.cpp build/sanitize/%/libsim.a build/sanitize/%/liboctree.a build/sanitize/%/libvoxelize.a
-	$(sanitized) -o $@ $^ -pthread
-
-build/sanitize/%/bake: tests/sim/native/bake.cpp build/sanitize/%/libsim.a build/sanitize/%/liboctree.a build/sanitize/%/libvoxelize.a
-	$(sanitized) -o $@ $^ -pthread
-
-build/sanitize/%/voxelize: tests/voxelize/native/exercise.cpp build/sanitize/%/libvoxelize.a
-	$(sanitized) -o $@ $^ -pthread
-
-build/sanitize/%/colour: tests/voxelize/native/colour.cpp build/sanitize/%/libvoxelize.a
-	$(sanitized) -o $@ $^ -pthread
-
-build/sanitize/%/octree: tests/octree/native/exercise.cpp build/sanitize/%/liboctree.a build/sanitize/%/libvoxelize.a
-	$(sanitized) -o $@ $^ -pthread
-
-build/sanitize/%/mesh_to_ray: examples/cpp/mesh_to_ray.cpp build/sanitize/%/liboctree.a build/sanitize/%/libvoxelize.a
-	$(sanitized) -o $@ $^ -pthread
-
-build/sanitize/%/query_octree: examples/cpp/query_octree.cpp build/sanitize/%/liboctree.a build/sanitize/%/libvoxelize.a
-	$(sanitized) -o $@ $^ -pthread
+# $(call program,NAME,SOURCE,LIBRARIES): a program of these libraries.
+define program
+build/sanitize/%/$(1): $(2) $(3:%=build/sanitize/\%/lib%.a)
+	$$(sanitized) -o $$@ $$^ -pthread
+endef
+$(eval $(call program,fit,tests/sim/native/fit.cpp,sim octree voxelize))
+$(eval $(call program,bake,tests/sim/native/bake.cpp,sim octree voxelize))
+$(eval $(call program,voxelize,tests/voxelize/native/exercise.cpp,voxelize))
+$(eval $(call program,colour,tests/voxelize/native/colour.cpp,voxelize))
+$(eval $(call program,octree,tests/octree/native/exercise.cpp,octree voxelize))
+$(eval $(call program,mesh_to_ray,examples/cpp/mesh_to_ray.cpp,octree voxelize))
+$(eval $(call program,query_octree,examples/cpp/query_octree.cpp,octree voxelize))
 
 # The same libraries with calls at every branch, which tell the fuzzer where an input leads. What it finds and keeps is
 # in build/fuzz/native/PROGRAM.

@@ -27,7 +27,7 @@ from voxrt.boards.bitstream import BaseDesign, read_board
 from voxrt.boards.board_scenes import board_scene
 from voxrt.export import Blob
 from voxrt.octree import Rom, from_dense
-from voxrt.views.orbit import orbit
+from voxrt.views.viewpoint import orbit
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from rtl_scenes import terrain

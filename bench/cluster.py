@@ -25,7 +25,7 @@ import voxrt
 from voxrt import octree
 from voxrt.plans.by_workers import JOINERS, MOST_PIECES, cluster_side, squares
 from voxrt.plans.plan import plan_build
-from voxrt.plans.tile_making import block_voxelizer
+from voxrt.plans.tile_tasks import block_voxelizer
 
 MEMORY = "2G"
 

@@ -19,7 +19,7 @@ from report import ROOT
 import voxrt
 from voxrt.board.designs import build
 from voxrt.boards.beam import SCREEN_HZ, BoardTracer, fit_frames
-from voxrt.views.orbit import orbit
+from voxrt.views.viewpoint import orbit
 
 DESIGNS, TESTS = ROOT / "board" / "designs", ROOT / "tests" / "board"
 BOARD = "ulx3s-85f-sdram"

@@ -10,31 +10,21 @@ from pathlib import Path
 REPOSITORY = Path(__file__).resolve().parents[1]
 RESULTS = REPOSITORY / "bench" / "results"
 TITLES = {
-    "animation": "Animation",
-    "area": "Area",
-    "bake": "Baked light",
     "budget": "Budget",
-    "clock": "Clock",
-    "configurations": "Configurations",
     "coverage": "Coverage",
     "demo": "Demo",
-    "fill": "Fill",
     "interior": "Interior",
-    "likeness": "Likeness to the source",
-    "loading": "Loading",
     "peers": "Other voxelizers",
     "rtl": "Cycles per pixel",
     "soak": "Soak",
-    "threads": "Threads",
-    "voxelize": "Voxelizer",
 }
-"""Titles by the file's name. A file that is not listed keeps its own title."""
+"""Titles by the file's name. A file that is not listed keeps its own title, or has its name as one."""
 
 
 def page(path: Path) -> str:
     """Give the text of the page of one file of results."""
     text = path.read_text(encoding="utf-8")
-    own, rest = (text[2:].split("\n", 1)) if text.startswith("# ") else (path.stem, text)
+    own, rest = text[2:].split("\n", 1) if text.startswith("# ") else (path.stem.capitalize(), text)
     title = TITLES.get(path.stem, own)
     return f"# {title}\n\nThe file `bench/results/{path.name}`, as its benchmark wrote it.\n\n{rest.lstrip()}"
 

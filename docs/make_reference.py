@@ -32,13 +32,7 @@ PACKAGES = (
 
 
 def exports(package: str) -> list[str]:
-    """Give the full names that a package or a module exports, each as it is imported.
-
-    Parameters
-    ----------
-    package
-        Import name.
-    """
+    """Give the full names that a package or a module exports, each as it is imported."""
     module = import_module(package)
     if hasattr(module, "__all__"):
         return [f"{package}.{name}" for name in module.__all__]
@@ -104,15 +98,7 @@ def _entry(name: str) -> str:
 
 
 def page(package: str, listed: dict[int, str] | None = None) -> str:
-    """Give the text of a package's page.
-
-    Parameters
-    ----------
-    package
-        Import name.
-    listed
-        Full names by the identity of what they stand for: what other pages describe, which this one only refers to.
-    """
+    """Give the text of a package's page. What other pages describe, `listed` by its identity, it only refers to."""
     names = exports(package)
     rooms = [name for name in names if inspect.ismodule(_value(name))]
     elsewhere = {name: listed[id(_value(name))] for name in names if listed and id(_value(name)) in listed}

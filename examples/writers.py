@@ -159,17 +159,7 @@ def _linear(channel: int) -> float:
 
 
 def write_vox(path: Path, voxels: dict[tuple[int, int, int], int], palette: list[tuple[int, int, int]]) -> None:
-    """Write a MagicaVoxel file of one model.
-
-    Parameters
-    ----------
-    path
-        Where to.
-    voxels
-        The palette's entry, 1 …, by x, y, z, each 0 … 255; z is up.
-    palette
-        sRGB, entry 1 first.
-    """
+    """Write a MagicaVoxel file of one model: the palette's entry, 1 …, by x, y, z, each 0 … 255; z is up."""
     width, depth, height = (1 + max(place[axis] for place in voxels) for axis in range(3))
     cells = b"".join(struct.pack("<4B", *place, entry) for place, entry in sorted(voxels.items()))
     colours = b"".join(struct.pack("<4B", *colour, 255) for colour in palette).ljust(1024, b"\0")

@@ -30,5 +30,5 @@ from voxrt.export.rom_files import read_rom as read_rom
 from voxrt.export.rom_files import write_rom as write_rom
 from voxrt.export.vox import read_vox as read_vox
 from voxrt.export.vox import write_vox as write_vox
+from voxrt.export.word_file import WORD_SUFFIXES as WORD_SUFFIXES
 from voxrt.export.word_file import WordFile as WordFile
-from voxrt.export.word_formats import WORD_SUFFIXES as WORD_SUFFIXES

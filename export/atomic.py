@@ -10,12 +10,12 @@ from __future__ import annotations
 import errno
 import os
 import re
+import signal
 import stat
+import threading
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
-
-from voxrt.export.uninterrupted import uninterrupted
 
 try:
     import fcntl
@@ -24,6 +24,9 @@ except ImportError:  # no POSIX system: files are replaced all the same, and nob
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
+    from types import FrameType
+
+INTERRUPTS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 _STEM = 60
 """Characters of the target's name in that of the temporary file: whatever these are, the name is not too long."""
@@ -45,18 +48,14 @@ def write_together(files: Mapping[Path, bytes | Iterable[bytes] | None]) -> None
 
     They change places in their order. Sets whose first files stand in one folder change one after another, whoever
     writes them. A process that is killed in the microseconds between two renamings leaves the rest of the set under
-    the temporary names, where :func:`staged_files` finds it.
-
-    Raises
-    ------
-    OSError
-        A file cannot be written; all old ones are then untouched and nothing new stays.
+    the temporary names, where :func:`staged_files` finds it. After an OSError all old files are untouched and nothing
+    new stays.
     """
     targets = {_followed(path): data for path, data in files.items()}
     with ExitStack() as stack:
         if len(targets) > 1:
             stack.enter_context(_lock_folder(next(iter(targets)).parent))
-        stack.enter_context(uninterrupted())
+        stack.enter_context(_uninterrupted())
         staged: dict[Path, Path | None] = {}
         for path, data in targets.items():
             if data is None:
@@ -199,6 +198,34 @@ def _remove_leftovers(path: Path) -> None:
                     leftover.unlink()
             finally:
                 os.close(descriptor)
+
+
+@contextmanager
+def _uninterrupted() -> Iterator[None]:
+    """Hold back SIGINT, SIGTERM and SIGHUP until the block is done, then let the last one through.
+
+    For the moments in which several files change places: who interrupts finds all of the old ones or all of the new.
+    Signals that are ignored stay ignored.
+    """
+    if threading.current_thread() is not threading.main_thread():  # signals never arrive elsewhere
+        yield
+        return
+    held: list[int] = []
+
+    def hold(number: int, _frame: FrameType | None) -> None:
+        held.append(number)
+
+    before = {}
+    for number in INTERRUPTS:
+        if signal.getsignal(number) not in {None, signal.SIG_IGN}:
+            before[number] = signal.signal(number, hold)
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+        if held:
+            signal.raise_signal(held[-1])
 
 
 @contextmanager

@@ -12,9 +12,9 @@ from voxrt.export.blob import Blob, read_blob, write_blob
 from voxrt.export.listing import read_listing
 from voxrt.export.manifest import read_manifest
 from voxrt.export.provenance import Provenance
-from voxrt.export.rom_files import other_words, read_words, words_crc32, write_rom
+from voxrt.export.rom_files import other_words, read_words, words_crc32, write_words
 from voxrt.export.vox import read_vox
-from voxrt.export.word_formats import WORD_SUFFIXES
+from voxrt.export.word_file import WORD_SUFFIXES
 from voxrt.octree import RomError
 
 if TYPE_CHECKING:
@@ -133,32 +133,15 @@ def convert(blob: Blob, target: Path | str, *, dialect: str = "report") -> tuple
     if suffix not in WORD_SUFFIXES:
         raise RomError(f"{target}: is not a format to write; name one of {', '.join(WRITABLE_SUFFIXES)}")
     blob = _with_known_provenance(blob, target, dialect)
-    known = blob.provenance
-    files = write_rom(
-        target.parent,
-        replace(blob.rom, name=target.stem),
-        stem=target.stem,
-        suffix=target.suffix,
-        dialect=dialect,
-        objects=known.objects,
-        warnings=known.warnings,
-        seconds=known.seconds,
-        source=known.source,
-        view=blob.view,
-        lighting=blob.lighting,
-        baked=known.baked,
-        animation=blob.animation,
-    )
+    named = replace(blob, rom=replace(blob.rom, name=target.stem))
+    files = write_words(target.parent, target.stem, target.suffix, named, dialect)
     return files.mem, files.manifest
 
 
 def _with_known_provenance(blob: Blob, target: Path, dialect: str) -> Blob:
     """Complete what is known of a memory by the manifest that its words have where they go.
 
-    Raises
-    ------
-    FileExistsError
-        The manifest there belongs to another file, with other words.
+    FileExistsError where the manifest there belongs to another file, with other words.
     """
     path = target.with_suffix(".json")
     try:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from voxrt.octree import BOARDS, census, shared_words, solid_bounds
 
 if TYPE_CHECKING:
     from voxrt.octree import Rom
 
-    Corner = tuple[int, int, int]
+Corner: TypeAlias = tuple[int, int, int]
 
 
 @dataclass(frozen=True, slots=True)

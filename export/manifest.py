@@ -18,9 +18,7 @@ from voxrt.octree.camera import Camera, Lighting  # noqa: TC001 - msgspec resolv
 from voxrt.voxelize import Grid, Material, ObjectReport, SceneWarning
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from voxrt.octree import Rom
+    from voxrt.export.blob import Blob
 
 SCHEMA_VERSION = 1
 
@@ -124,22 +122,11 @@ class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return None if self.world is None else Grid(self.depth, self.world.origin, self.world.voxel_size)
 
 
-def make_manifest(
-    rom: Rom,
-    crc32: int,
-    dialect: Dialect,
-    *,
-    objects: tuple[ObjectReport, ...] = (),
-    warnings: tuple[SceneWarning, ...] = (),
-    seconds: Mapping[str, float] | None = None,
-    source: Source | None = None,
-    view: Camera | None = None,
-    lighting: Lighting | None = None,
-    baked: BakedLight | None = None,
-    animation: Animation | None = None,
-) -> Manifest:
+def make_manifest(blob: Blob, crc32: int, dialect: Dialect) -> Manifest:
     """Return the manifest of a memory whose ``.mem`` file has the CRC-32 `crc32`."""
-    voxels = census(rom.octree).voxels
+    rom, known = blob.rom, blob.provenance
+    counts = census(rom.octree)
+    voxels = counts.voxels
     return Manifest(
         schema=SCHEMA_VERSION,
         name=rom.name,
@@ -148,20 +135,20 @@ def make_manifest(
         depth=rom.octree.depth,
         dialect=dialect,
         crc32=f"{crc32:08X}",
-        voxels=sum(count for material, count in voxels.items() if material != 0),
+        voxels=counts.solid_voxels,
         materials=tuple(
             MaterialEntry(i, entry.name, entry.colour, entry.mirror, entry.authored, voxels.get(i, 0))
             for i, entry in enumerate(rom.materials)
         ),
         world=None if rom.grid is None else _world(rom.grid),
-        objects=objects,
-        warnings=warnings,
-        seconds=dict(seconds or {}),
-        source=source,
-        view=view,
-        lighting=lighting,
-        baked=baked,
-        animation=animation,
+        objects=known.objects,
+        warnings=known.warnings,
+        seconds=known.seconds,
+        source=known.source,
+        view=blob.view,
+        lighting=blob.lighting,
+        baked=known.baked,
+        animation=blob.animation,
     )
 
 

@@ -14,10 +14,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from voxrt.export.atomic import new_folder, staged_files, write_together
+from voxrt.export.blob import Blob
 from voxrt.export.manifest import make_manifest, manifest_bytes, read_manifest
 from voxrt.export.palette import default_materials
-from voxrt.export.word_file import mem_crc32
-from voxrt.export.word_formats import WORD_SUFFIXES, format_words, read_word_file
+from voxrt.export.provenance import Provenance
+from voxrt.export.word_file import WORD_SUFFIXES, format_words, mem_crc32, read_word_file
 from voxrt.octree import Octree, Rom, RomError, census, check_roots, decode, detect_dialect, encode, with_means
 from voxrt.octree.dialects import as_dialect
 from voxrt.voxelize import SceneWarning
@@ -29,13 +30,12 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from voxrt.export.blob import Blob
     from voxrt.export.manifest import Manifest
     from voxrt.export.provenance import BakedLight, Source
     from voxrt.export.word_file import WordFile
     from voxrt.octree import Animation
     from voxrt.octree.camera import Camera, Lighting
-    from voxrt.voxelize import Material, ObjectReport
+    from voxrt.voxelize import ObjectReport
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,25 +112,21 @@ def write_rom(
     >>> write_rom(Path("out"), rom).mem.name
     'house.mem'
     """
-    instance("rom", rom, Rom)
+    known = Provenance(source, objects, warnings, dict(seconds or {}), baked)
+    blob = Blob(instance("rom", rom, Rom), view, lighting, known, animation)
+    return write_words(folder, rom.name if stem is None else stem, suffix, blob, dialect, beside=beside)
+
+
+def write_words(
+    folder: Path, stem: str, suffix: str, blob: Blob, dialect: str, *, beside: Mapping[Path, bytes | None] | None = None
+) -> RomFiles:
+    """Write as :func:`write_rom` does, with what the blob says besides the memory in the manifest."""
     choice("suffix", suffix.lower(), WORD_SUFFIXES)
-    stem = rom.name if stem is None else stem
+    rom = blob.rom
     if stem in {"", ".", ".."} or any(c in stem for c in "/\0") or (stem == rom.name and "\\" in stem):
         raise ValueError(f"{stem!r} cannot name a file")
-    words = _encoded(rom, dialect, animation)
-    manifest = make_manifest(
-        rom,
-        mem_crc32(words),
-        as_dialect(dialect),
-        objects=objects,
-        warnings=warnings,
-        seconds=seconds,
-        source=source,
-        view=view,
-        lighting=lighting,
-        baked=baked,
-        animation=animation,
-    )
+    words = _encoded(rom, dialect, blob.animation)
+    manifest = make_manifest(blob, mem_crc32(words), as_dialect(dialect))
     files = RomFiles(folder / f"{stem}{suffix}", folder / f"{stem}.json")
     with new_folder(folder):
         _refuse_foreign(files.manifest)
@@ -210,8 +206,6 @@ def read_words(
     mem_path: Path, depth: int | None = None, dialect: str | None = None
 ) -> tuple[Blob, tuple[SceneWarning, ...]]:
     """Read as :func:`read_rom` does, with the camera, the lighting and the animation that the manifest names."""
-    from voxrt.export.blob import Blob  # noqa: PLC0415 - builds write, and do not wait for what reads
-
     if mem_path.suffix.lower() not in WORD_SUFFIXES:
         raise RomError(f"{mem_path}: is no file of octree words; name one that ends in {', '.join(WORD_SUFFIXES)}")
     mem, manifest = _read_pair(mem_path)
@@ -309,11 +303,7 @@ def _without_manifest(
         message = f"{path.name} has no manifest; depth {octree.depth} is the least that its words have"
         warnings.append(SceneWarning("assumed-depth", message))
     warnings.append(SceneWarning("assumed-palette", f"{path.name} has no manifest; its materials have default colours"))
-    return Rom(path.stem, octree, _palette(octree)), tuple(warnings)
-
-
-def _palette(octree: Octree) -> tuple[Material, ...]:
-    return default_materials(_highest_material(octree))
+    return Rom(path.stem, octree, default_materials(_highest_material(octree))), tuple(warnings)
 
 
 def _highest_material(octree: Octree) -> int:

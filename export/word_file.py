@@ -1,21 +1,30 @@
-"""Files that hold memory words and nothing else, whatever their syntax."""
+"""Files that hold memory words and nothing else, whatever their syntax.
+
+What reads and writes a format is imported when a file has its suffix.
+"""
 
 from __future__ import annotations
 
 import mmap
 import os
 from dataclasses import dataclass
+from importlib import import_module
 from stat import S_ISREG
 from typing import TYPE_CHECKING
 
 from voxrt.octree import RomError, _native
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
     from pathlib import Path
 
     import numpy as np
     from numpy.typing import NDArray
+
+WORD_SUFFIXES = (".mem", ".coe", ".mif", ".bin")
+"""The files of words that are read and written."""
+
+_NAMES = {".mem": "mem", ".coe": "coe", ".mif": "mif", ".bin": "raw"}
 
 _PIECE = 1 << 20
 """Words that are formatted at a time."""
@@ -81,3 +90,19 @@ def mapped_bytes(path: Path) -> bytes | mmap.mmap:
     except OSError:
         pass  # reading says why
     return read_bytes(path)
+
+
+def read_word_file(path: Path) -> WordFile:
+    """Read a file of words, by its suffix; RomError where it cannot be read or is damaged."""
+    name = _NAMES[path.suffix.lower()]
+    found: WordFile = getattr(import_module(f"voxrt.export.{name}"), f"read_{name}")(path)
+    return found
+
+
+def format_words(words: NDArray[np.uint32], suffix: str) -> bytes | Iterable[bytes]:
+    """Return words (uint32, shape (N,)) as the bytes of a file of that suffix, whole or in pieces."""
+    if suffix == ".mem":
+        return mem_pieces(words)
+    name = _NAMES[suffix]
+    made: bytes | Iterable[bytes] = getattr(import_module(f"voxrt.export.{name}"), f"{name}_bytes")(words)
+    return made

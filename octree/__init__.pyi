@@ -6,6 +6,7 @@ from voxrt.octree.animation import frame_octree as frame_octree
 from voxrt.octree.animation import frames_as_octants as frames_as_octants
 from voxrt.octree.animation import join_frames as join_frames
 from voxrt.octree.assembly import Assembly as Assembly
+from voxrt.octree.assembly import DiskAssembly as DiskAssembly
 from voxrt.octree.budget import BOARDS as BOARDS
 from voxrt.octree.budget import Fit as Fit
 from voxrt.octree.budget import coarsen as coarsen
@@ -20,9 +21,10 @@ from voxrt.octree.dialects import detect_dialect as detect_dialect
 from voxrt.octree.dialects import encode as encode
 from voxrt.octree.difference import Difference as Difference
 from voxrt.octree.difference import Region as Region
+from voxrt.octree.difference import SurfaceChange as SurfaceChange
 from voxrt.octree.difference import diff as diff
 from voxrt.octree.difference import differing_regions as differing_regions
-from voxrt.octree.disk_assembly import DiskAssembly as DiskAssembly
+from voxrt.octree.difference import surface_change as surface_change
 from voxrt.octree.errors import RomError as RomError
 from voxrt.octree.hidden import fill_hidden as fill_hidden
 from voxrt.octree.hidden import hidden_voxels as hidden_voxels
@@ -41,8 +43,6 @@ from voxrt.octree.query import solid_bounds as solid_bounds
 from voxrt.octree.rom import Rom as Rom
 from voxrt.octree.statistics import Census as Census
 from voxrt.octree.statistics import census as census
-from voxrt.octree.surface import SurfaceChange as SurfaceChange
-from voxrt.octree.surface import surface_change as surface_change
 from voxrt.octree.vdb import from_vdb as from_vdb
 from voxrt.octree.voxel_arrays import ARRAY_LIMIT as ARRAY_LIMIT
 from voxrt.octree.voxel_arrays import to_dense as to_dense

@@ -20,9 +20,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.octree import _native
-from voxrt.octree.difference import diff
+from voxrt.octree.difference import SurfaceChange, diff, surface_change
 from voxrt.octree.octree import Octree
-from voxrt.octree.surface import SurfaceChange, surface_change
 from voxrt.voxelize import DoesNotFitError
 from voxrt.voxelize.arguments import instance, whole, whole_array
 
@@ -192,16 +191,11 @@ def fit(
     shared = share(octree)
     if len(shared.words) <= words:
         return _measure(octree, shared, shared)
-    fits = [_measure(octree, shared, candidate) for candidate in _candidates(shared, words, table)]
-    return choose(fits) if choose else min(fits, key=lambda fit: (fit.changed + fit.appeared, len(fit.octree.words)))
-
-
-def _candidates(shared: Octree, words: int, colours: NDArray[np.uint8]) -> list[Octree]:
-    """Return memories of at most `words` words: src/budget/fit_candidates.h. The first is the plain coarser world."""
-    found, problem = _native.fit_candidates(shared.words, shared.depth, words, colours)
+    found, problem = _native.fit_candidates(shared.words, shared.depth, words, table)
     if problem:
         raise DoesNotFitError(problem)
-    return [Octree(shared.depth, one) for one in found]
+    fits = [_measure(octree, shared, Octree(shared.depth, one)) for one in found]
+    return choose(fits) if choose else min(fits, key=lambda fit: (fit.changed + fit.appeared, len(fit.octree.words)))
 
 
 def _colours(rows: NDArray[np.uint8] | None) -> NDArray[np.uint8]:

@@ -1,4 +1,4 @@
-"""What differs between two octrees."""
+"""What differs between two octrees: voxels, regions, surfaces."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from voxrt.octree import _native
 from voxrt.octree.octree import Octree
-from voxrt.octree.query import Corner, as_bounds
+from voxrt.octree.query import Corner  # noqa: TC001 - msgspec resolves the annotations of this module
 from voxrt.voxelize.arguments import instance
 
 
@@ -75,9 +75,8 @@ def diff(first: Octree, second: Octree) -> Difference:
     >>> diff(before, from_points([[1, 2, 3], [0, 0, 0]], [6, 1], depth=2))
     Difference(appeared=1, vanished=0, recoloured=1, bounds=((0, 0, 0), (2, 3, 4)))
     """
-    refuse_other_depth(first, second)
-    found = _native.diff(first.words, second.words, first.depth)
-    return Difference(found.appeared, found.vanished, found.recoloured, as_bounds(found.bounds))
+    _refuse_other_depth(first, second)
+    return Difference(*_native.diff(first.words, second.words, first.depth))
 
 
 def differing_regions(first: Octree, second: Octree) -> tuple[Region, ...]:
@@ -102,22 +101,59 @@ def differing_regions(first: Octree, second: Octree) -> tuple[Region, ...]:
     >>> [region.bounds for region in differing_regions(before, from_points([[7, 7, 7]], [7], depth=3))]
     [((1, 2, 3), (2, 3, 4)), ((7, 7, 7), (8, 8, 8))]
     """
-    refuse_other_depth(first, second)
+    _refuse_other_depth(first, second)
     found = _native.differing_regions(first.words, second.words, first.depth)
     return tuple(
         Region(((x, y, z), (end_x, end_y, end_z)), appeared, vanished, recoloured)
         for (x, y, z), (end_x, end_y, end_z), appeared, vanished, recoloured in zip(
-            found.low.tolist(),
-            found.high.tolist(),
-            found.appeared.tolist(),
-            found.vanished.tolist(),
-            found.recoloured.tolist(),
-            strict=True,
+            *(column.tolist() for column in found), strict=True
         )
     )
 
 
-def refuse_other_depth(first: Octree, second: Octree) -> None:
+@dataclass(frozen=True, slots=True)
+class SurfaceChange:
+    """Surface voxels and how many of them changed, as :func:`surface_change` returns them.
+
+    A surface voxel is solid, and one of its six neighbours is empty or outside the world.
+
+    Attributes
+    ----------
+    surface
+        Surface voxels of the first octree.
+    changed
+        Those of them that are not on the surface of the second, or of another material there.
+    """
+
+    surface: int
+    changed: int
+
+    @property
+    def percent(self) -> float:
+        """Percent of the surface voxels that changed."""
+        return 100 * self.changed / self.surface if self.surface else 0.0
+
+
+def surface_change(first: Octree, second: Octree) -> SurfaceChange:
+    """Compare the surfaces of two octrees of one depth, voxel by voxel. The cost grows with the surface.
+
+    Raises
+    ------
+    TypeError, ValueError
+        One is no octree, or the depths differ.
+
+    Examples
+    --------
+    >>> from voxrt.octree import from_points
+    >>> before = from_points([[1, 2, 3], [0, 0, 0]], [7, 7], depth=2)
+    >>> surface_change(before, from_points([[1, 2, 3]], [7], depth=2)).percent
+    50.0
+    """
+    _refuse_other_depth(first, second)
+    return SurfaceChange(*_native.surface_change(first.words, second.words, first.depth))
+
+
+def _refuse_other_depth(first: Octree, second: Octree) -> None:
     """Raise TypeError or ValueError unless both are octrees of one depth."""
     instance("first", first, Octree)
     if first.depth != instance("second", second, Octree).depth:

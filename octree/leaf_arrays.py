@@ -84,8 +84,8 @@ def leaves(
 
 
 def _chunks(walk: _native.LeafWalk, chunk: int) -> Iterator[Leaves]:
-    while len((part := walk.next(chunk)).levels):
-        yield Leaves(corners=part.corners, levels=part.levels, materials=part.materials)
+    while len((part := Leaves(*walk.next(chunk))).levels):
+        yield part
 
 
 def solid_leaves(octree: Octree, low: Corner = (0, 0, 0), high: Corner | None = None) -> Leaves:

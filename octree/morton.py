@@ -21,3 +21,12 @@ def morton(voxels: NDArray[np.int64]) -> NDArray[np.int64]:
             spread = (spread | spread << shift) & mask
         code |= spread << axis
     return code
+
+
+def positions(codes: NDArray[np.int64], bits: int = 16) -> NDArray[np.int32]:
+    """Return the voxels of such codes, of so many bits per axis: int32, shape (N, 3)."""
+    found = np.zeros((len(codes), 3), np.int32)
+    for bit in range(bits):
+        for axis in range(3):
+            found[:, axis] |= (codes >> (3 * bit + axis) & 1).astype(np.int32) << bit
+    return found

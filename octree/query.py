@@ -101,12 +101,7 @@ def solid_bounds(octree: Octree) -> tuple[Corner, Corner] | None:
     ((1, 2, 1), (4, 3, 4))
     """
     instance("octree", octree, Octree)
-    return as_bounds(_native.solid_bounds(octree.words, octree.depth))
-
-
-def as_bounds(bounds: _native.Bounds | None) -> tuple[Corner, Corner] | None:
-    """Bounds of the native code as a plain pair."""
-    return None if bounds is None else (bounds.low, bounds.high)
+    return _native.solid_bounds(octree.words, octree.depth)
 
 
 def as_box(low: object, high: object) -> tuple[Corner, Corner]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from voxrt.octree import _native
 from voxrt.octree.leaf_arrays import leaves
+from voxrt.octree.morton import positions
 from voxrt.octree.octree import Octree
 from voxrt.octree.query import as_box
 from voxrt.octree.statistics import census
@@ -139,11 +140,7 @@ def _fill(points: NDArray[np.int32], starts: NDArray[np.int64], corners: NDArray
 @cache
 def _offsets(level: int) -> NDArray[np.int32]:
     """Return the voxels of an octant of 2**level voxels per side in Morton order: int32, shape (8**level, 3)."""
-    codes, places = np.arange(1 << 3 * level), np.zeros((1 << 3 * level, 3), np.int32)
-    for bit in range(level):
-        for axis in range(3):
-            places[:, axis] |= (codes >> (3 * bit + axis) & 1).astype(np.int32) << bit
-    return places
+    return positions(np.arange(1 << 3 * level), level)
 
 
 def _size(count: int) -> str:

@@ -1,9 +1,14 @@
 # The exact model, native; src/model/bindings/module.cpp documents it.
 from collections.abc import Sequence
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
+
+_Triple: TypeAlias = tuple[int, int, int]
+_Surface: TypeAlias = tuple[int, int, bool, _Triple]
+_Light: TypeAlias = Literal["none", "lit", "turned away", "shadowed"]
+_Reading: TypeAlias = tuple[int, int, int, _Triple, int, int]
 
 INSTRUCTION_SETS: tuple[str, ...]
 
@@ -18,29 +23,6 @@ class TracedRays(NamedTuple):
     face: NDArray[np.uint8]
     cell: NDArray[np.int32]
     words_read: int
-
-class Reading(NamedTuple):
-    address: int
-    word: int
-    level: int
-    corner: tuple[int, int, int]
-    axis: int
-    time: int
-
-class FollowedRay(NamedTuple):
-    material: int
-    face: int
-    cell: tuple[int, int, int]
-    readings: list[Reading]
-
-class ExplainedPixel(NamedTuple):
-    colour: tuple[int, int, int]
-    mirrors: list[tuple[int, int, bool, tuple[int, int, int]]]
-    surface: tuple[int, int, bool, tuple[int, int, int]] | None
-    light: Literal["none", "lit", "turned away", "shadowed"]
-    part: int
-    whole: int
-    is_mean: bool
 
 class Stop:
     def __init__(self) -> None: ...
@@ -69,7 +51,9 @@ class Memory:
         stop: Stop | None = None,
     ) -> RenderedPixels: ...
     def trace(self, origins: NDArray[np.int32], directions: NDArray[np.int32], threads: int = 0) -> TracedRays: ...
-    def follow(self, origin: NDArray[np.int32], direction: NDArray[np.int32]) -> FollowedRay: ...
+    def follow(
+        self, origin: NDArray[np.int32], direction: NDArray[np.int32]
+    ) -> tuple[int, int, _Triple, list[_Reading]]: ...
     def explain(
         self,
         materials: NDArray[np.uint8],
@@ -82,18 +66,12 @@ class Memory:
         ambient: int = 0,
         bounces: int = 0,
         mirrors: NDArray[np.uint8] | None = None,
-    ) -> ExplainedPixel: ...
+    ) -> tuple[_Triple, list[_Surface], _Surface | None, _Light, int, int, bool]: ...
 
 class Band(NamedTuple):
     camera: NDArray[np.int32]
     width: int
     rows: int
-
-class BeamFit(NamedTuple):
-    scale: int
-    cycles_per_pixel: float
-    lead: float
-    frames_per_second: float
 
 class BeamSearch:
     def __init__(self, cameras: NDArray[np.int32], clock_hz: float, buffer_lines: int) -> None: ...
@@ -105,7 +83,7 @@ class BeamSearch:
     def total(self) -> int: ...
     def band(self) -> Band: ...
     def give(self, cycles: float) -> None: ...
-    def fit(self) -> BeamFit: ...
+    def fit(self) -> tuple[int, float, float, float]: ...
 
 def orbit(points: NDArray[np.float64], width: int, height: int, count: int) -> NDArray[np.int32]: ...
 def beam_lead(rows: Sequence[float], line: float, scale: int, buffer_lines: int) -> float: ...

@@ -13,7 +13,7 @@ import numpy as np
 
 from voxrt.octree.camera import POSITION_UNITS, pixel_directions
 from voxrt.sim import _model
-from voxrt.sim.engine_arguments import palette_of
+from voxrt.sim.engine_arguments import palette_of, registers_of
 from voxrt.sim.errors import SimulatorError
 from voxrt.sim.frame import FACE_NONE
 from voxrt.sim.similarity import peak_signal_to_noise, structural_similarity
@@ -222,7 +222,6 @@ def _view_voxels(rom: Rom, camera: Camera, directions: NDArray[np.float64]) -> V
     flat = directions.reshape(-1, 3)
     origins = np.broadcast_to(np.array(camera.position, dtype=np.int32), flat.shape)
     memory = _model.Memory(rom.octree.words, rom.octree.depth)
-    registers = np.array([camera.position, camera.look, camera.right, camera.up], dtype=np.int32)
     hits = memory.trace(np.ascontiguousarray(origins), flat.astype(np.int32))
     axis = np.minimum(hits.face, 2)[:, None].astype(np.int64)
     lateral = np.take_along_axis(flat, axis, 1)[:, 0]
@@ -234,7 +233,7 @@ def _view_voxels(rom: Rom, camera: Camera, directions: NDArray[np.float64]) -> V
     depth = np.where(hits.material > 0, parameter * np.linalg.norm(flat, axis=1), np.inf)
     normal = np.zeros_like(flat)
     np.put_along_axis(normal, axis, np.where(crossed, -np.sign(lateral), 0)[:, None], 1)
-    colour = memory.render(palette_of(rom), registers, width, height).colour
+    colour = memory.render(palette_of(rom), registers_of(camera), width, height).colour
     return View(colour, depth.reshape(height, width), normal.reshape(height, width, 3))
 
 

@@ -17,7 +17,7 @@ from voxrt.sim.errors import SimulatorError
 from voxrt.voxelize.arguments import instance, whole_array
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
     from voxrt.octree.camera import Camera, Triple
 
@@ -207,23 +207,19 @@ def follow_ray(octree: Octree, origin: ArrayLike, direction: ArrayLike) -> RayPa
         raise ValueError("direction must not be zero")
     if max(map(abs, way)) >= DIRECTION_LIMIT:
         raise SimulatorError(f"the ray's direction {way} is not below 2**20; scale it down")
-    followed = _model.Memory(octree.words, octree.depth).follow(_int32(start), _int32(way))
-    hit = followed.material
+    memory = _model.Memory(octree.words, octree.depth)
+    hit, face, cell, readings = memory.follow(np.array(start, np.int32), np.array(way, np.int32))
     return RayPath(
         origin=start,
         direction=way,
         root=int(octree.words[0]),
-        readings=tuple(Reading(**reading._asdict()) for reading in followed.readings),
+        readings=tuple(Reading(*reading) for reading in readings),
         material=hit,
-        face=followed.face,
-        cell=followed.cell if hit else None,
+        face=face,
+        cell=cell if hit else None,
     )
 
 
 def _registers(name: str, value: ArrayLike) -> Triple:
     x, y, z = whole_array(name, value, (3,), np.int64, low=-(1 << 31), high=(1 << 31) - 1).tolist()
     return x, y, z
-
-
-def _int32(triple: Triple) -> NDArray[np.int32]:
-    return np.array(triple, np.int32)

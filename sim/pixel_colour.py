@@ -108,23 +108,20 @@ def explain_colour(rom: Rom, path: RayPath, lighting: Lighting = PLAIN_LIGHTING)
     """
     rom = instance("rom", rom, Rom)
     check_lighting(lighting)
-    found = _model.Memory(rom.octree.words, rom.octree.depth).explain(
+    rgb, mirrors, met, light, part, whole, is_mean = _model.Memory(rom.octree.words, rom.octree.depth).explain(
         palette_of(rom),
         np.array(path.origin, np.int32),
         np.array(path.direction, np.int32),
         **shading_of(rom, lighting),
     )
-    mirrors = tuple(_surface(rom, *one) for one in found.mirrors)
     surface = register = None
-    if found.surface is not None:
-        surface = _surface(rom, *found.surface)
-        _, axis, is_upper, _ = found.surface
+    if met is not None:
+        surface = _surface(rom, *met)
+        _, axis, is_upper, _ = met
         if axis != FACE_NONE and lighting.shading == "faces":
             register = (lighting.faces or FACES)[2 * axis + is_upper]
-    brightness = found.part / found.whole
-    return PixelColour(
-        found.colour, lighting.shading, mirrors, surface, found.is_mean, register, found.light, brightness
-    )
+    reflecting = tuple(_surface(rom, *one) for one in mirrors)
+    return PixelColour(rgb, lighting.shading, reflecting, surface, is_mean, register, light, part / whole)
 
 
 def _surface(rom: Rom, material: int, face: int, is_upper: bool, cell: Triple) -> Surface:

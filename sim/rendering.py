@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
 import numpy as np
@@ -16,7 +17,7 @@ from voxrt.sim.errors import SimulatorError
 from voxrt.sim.frame import Frame, RenderCost
 from voxrt.sim.hardware import render_hardware
 from voxrt.sim.samples import join_samples, put_background
-from voxrt.voxelize.arguments import choice, instance, real, text, whole, whole_array
+from voxrt.voxelize.arguments import choice, real, text, whole, whole_array
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -134,17 +135,9 @@ def render(
     choice("engine", engine, get_args(Engine))
     if engine == "model" and dram is not None:
         raise SimulatorError("the model has no external memory: leave dram out, or render with --engine rtl")
+    shown = put_background(rom, background)
     frames = _prepare(
-        rom,
-        camera,
-        size,
-        lighting=lighting,
-        samples=samples,
-        background=background,
-        threads=threads,
-        config=config,
-        root=root,
-        lod=lod,
+        shown, camera, size, lighting=lighting, samples=samples, threads=threads, config=config, root=root, lod=lod
     )
     return join_samples(frames(engine, dram), background)
 
@@ -189,17 +182,9 @@ def check(
     >>> check(rom, frame_scene(rom, (32, 32)), (32, 32)).wrong_pixels
     0
     """
+    shown = put_background(rom, background)
     frames = _prepare(
-        rom,
-        camera,
-        size,
-        lighting=lighting,
-        samples=samples,
-        background=background,
-        threads=threads,
-        config=config,
-        root=root,
-        lod=lod,
+        shown, camera, size, lighting=lighting, samples=samples, threads=threads, config=config, root=root, lod=lod
     )
     rtl, model = frames("rtl", dram), frames("model", None)
     wrong = np.any([_apart(hardware, exact) for hardware, exact in zip(rtl, model, strict=True)], axis=0)
@@ -213,21 +198,18 @@ def _prepare(
     *,
     lighting: Lighting,
     samples: int,
-    background: Background | None,
     threads: int,
     config: str,
     root: int,
     lod: float,
 ) -> Callable[[Engine, Dram | None], list[Frame]]:
     """Check what both engines are asked; return what renders the samples of a frame by one of them."""
-    instance("rom", rom, Rom)
     width, height = whole_array("size", size, (2,), np.int64, low=1, high=_FRAME_LIMIT).tolist()
     size = width, height
     if whole("samples", samples, 1, max(SAMPLES)) not in SAMPLES:
         raise ValueError(f"samples must be {', '.join(map(str, SAMPLES))}, not {samples}")
     _check_directions(camera, size)
     check_lighting(lighting)
-    shown = put_background(rom, background)
     cameras = sample_cameras(camera, size, samples)
     for one in cameras[1:]:
         _check_directions(one, size)
@@ -235,18 +217,12 @@ def _prepare(
     lod = _checked_lod(rom, lighting, lod)
 
     def frames(engine: Engine, dram: Dram | None) -> list[Frame]:
-        scales = [lod_scale(one, lod) if lod else 0 for one in cameras]
         if engine == "model":
-            count, alone = whole("threads", threads, 0, 1024), replace(shown, octree=frame_octree(rom.octree, root))
-            return [
-                _render_model(alone, one, size, lighting, threads=count, scale=scale)
-                for one, scale in zip(cameras, scales, strict=True)
-            ]
-        name = text("config", config)
-        return [
-            render_hardware(shown, one, size, lighting, config=name, dram=dram, root=root, scale=scale, lod=lod)
-            for one, scale in zip(cameras, scales, strict=True)
-        ]
+            alone = replace(rom, octree=frame_octree(rom.octree, root))
+            draw = partial(_render_model, alone, threads=whole("threads", threads, 0, 1024))
+        else:
+            draw = partial(render_hardware, rom, config=text("config", config), dram=dram, root=root, lod=lod)
+        return [draw(one, size, lighting, scale=lod_scale(one, lod) if lod else 0) for one in cameras]
 
     return frames
 

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
 
+from voxrt.octree import Rom
 from voxrt.octree.camera import Triple, average_cut_out, average_samples
 from voxrt.sim.frame import RenderCost
-from voxrt.voxelize.arguments import whole_array
+from voxrt.voxelize.arguments import instance, whole_array
 
 if TYPE_CHECKING:
-    from voxrt.octree import Rom
     from voxrt.sim.frame import Frame
 
 Background: TypeAlias = Triple | Literal["transparent"]
@@ -24,8 +24,9 @@ Background: TypeAlias = Triple | Literal["transparent"]
 def put_background(rom: Rom, background: Background | None) -> Rom:
     """Give a memory with another background; None and ``"transparent"`` leave it.
 
-    TypeError or ValueError for a colour that is not three numbers of 0 … 255.
+    TypeError or ValueError for what is no memory, or a colour that is not three numbers of 0 … 255.
     """
+    instance("rom", rom, Rom)
     if background is None or background == "transparent":
         return rom
     red, green, blue = whole_array("background", background, (3,), np.int64, low=0, high=255).tolist()

@@ -16,13 +16,7 @@ class OutputError(Exception):
 
 
 def check_folder(folder: Path) -> None:
-    """Refuse a folder that cannot be written to, before any work is done for it.
-
-    Raises
-    ------
-    OutputError
-        `folder` is a file, lies in one, or may not be written to.
-    """
+    """Refuse a folder that cannot be written to, before any work is done for it, with an OutputError."""
     nearest = folder
     while not nearest.exists() and nearest != nearest.parent:
         nearest = nearest.parent
@@ -33,13 +27,7 @@ def check_folder(folder: Path) -> None:
 
 
 def check_file(path: Path) -> None:
-    """Refuse a file that cannot be written, before any work is done for it.
-
-    Raises
-    ------
-    OutputError
-        Its folder cannot be written to, or `path` is a folder.
-    """
+    """Refuse a file that cannot be written, before any work is done for it, with an OutputError."""
     check_folder(path.parent)
     if path.is_dir():
         raise OutputError(f"{path}: is a folder; name a file")
@@ -47,14 +35,9 @@ def check_file(path: Path) -> None:
 
 @contextmanager
 def writing(target: Path) -> Iterator[None]:
-    """Make the folder of an output, and say of an error of the operating system which output it hit.
+    """Make the folder of an output, and raise an OutputError that names the output instead of an OSError of the block.
 
     A folder that was made goes again if the block fails.
-
-    Raises
-    ------
-    OutputError
-        Instead of the OSError of the block.
     """
     from voxrt.export.atomic import new_folder  # noqa: PLC0415 - NumPy comes with it, and --help must be instant
 

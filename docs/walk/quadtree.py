@@ -17,28 +17,14 @@ SPACE = 0  # the material of empty cells
 
 @dataclass(frozen=True)
 class Reading:
-    """One word that the ray reads.
+    """One word that the ray reads."""
 
-    Attributes
-    ----------
-    address, word
-        Where the word stands, and the word.
-    level
-        log2 of the side of the word's square, in cells.
-    corner
-        Lowest cell of the square, (x, y).
-    key
-        (T, axis) of the line that the ray crossed last.
-    stack
-        Block by the level of its four squares, as it is after this word was read.
-    """
-
-    address: int
+    address: int  # where the word stands
     word: int
-    level: int
-    corner: tuple[int, int]
-    key: tuple[int, int]
-    stack: dict[int, int]
+    level: int  # log2 of the side of the word's square, in cells
+    corner: tuple[int, int]  # lowest cell of the square, (x, y)
+    key: tuple[int, int]  # (T, axis) of the line that the ray crossed last
+    stack: dict[int, int]  # block by the level of its four squares, as it is after this word was read
 
 
 def crossing_time(origin: tuple[int, int], direction: tuple[int, int], axis: int, line: int) -> int:
@@ -50,17 +36,9 @@ def crossing_time(origin: tuple[int, int], direction: tuple[int, int], axis: int
 def build(rows: list[str]) -> list[int]:
     """Build the words of a quadtree.
 
-    Parameters
-    ----------
-    rows
-        The world from its top row down, a character per cell: a digit is a material, anything else is empty. As many
-        rows as columns, a power of two.
-
-    Returns
-    -------
-    list of int
-        Word 0 is the root. Blocks of four words follow, breadth first: lower left, lower right, upper left, upper
-        right.
+    `rows` is the world from its top row down, a character per cell: a digit is a material, anything else is empty. It
+    has as many rows as columns, a power of two. Word 0 is the root. Blocks of four words follow, breadth first: lower
+    left, lower right, upper left, upper right.
     """
     cells = [[int(cell) if cell.isdigit() else SPACE for cell in row] for row in reversed(rows)]
     words = [0]
@@ -79,26 +57,10 @@ def build(rows: list[str]) -> list[int]:
 
 
 def follow(words: list[int], depth: int, origin: tuple[int, int], direction: tuple[int, int]) -> list[Reading]:
-    """Follow a ray until it hits a solid square or leaves the world.
+    """Follow a ray until it hits a solid square or leaves the world, of 2 ** depth cells per side.
 
-    Parameters
-    ----------
-    words, depth
-        The quadtree; the world has 2 ** depth cells per side.
-    origin
-        Start of the ray, in sixteenths of a cell.
-    direction
-        Two positive whole numbers.
-
-    Returns
-    -------
-    list of Reading
-        All words that the ray reads, in order. The last one is a solid leaf, unless the ray leaves the world.
-
-    Raises
-    ------
-    ValueError
-        A component of the direction is not positive.
+    It starts at `origin`, in sixteenths of a cell. `direction` is two positive whole numbers; ValueError where they are
+    not. Returns all words that the ray reads, in order: the last is a solid leaf, unless the ray leaves the world.
     """
     if min(direction) <= 0:
         raise ValueError(f"the direction {direction} must have positive components; mirror the world first")

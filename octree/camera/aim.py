@@ -69,14 +69,8 @@ def frame_points(points: ArrayLike, size: tuple[int, int]) -> Camera:
 def eye_that_sees(points: ArrayLike, registers: ArrayLike, size: tuple[int, int]) -> NDArray[np.float64]:
     """Give where a camera of these registers sees all points, tightly: float, shape (3,), voxels.
 
-    Parameters
-    ----------
-    points
-        float, shape (N, 3), voxels, grid frame; at least one.
-    registers
-        float, shape (3, 3): look, right and up as rows, linearly independent, of any common scale.
-    size
-        Columns and rows of the frame.
+    The points, one or more, are float, shape (N, 3), voxels; the registers float, shape (3, 3): look, right and up as
+    rows, linearly independent, of any common scale.
     """
     rows = np.asarray(registers, dtype=np.float64)
     z, x, y = np.linalg.solve(rows.T, np.asarray(points, dtype=np.float64).T)
@@ -91,15 +85,7 @@ def eye_that_sees(points: ArrayLike, registers: ArrayLike, size: tuple[int, int]
 
 
 def frame_world(depth: int, size: tuple[int, int]) -> Camera:
-    """Make the camera that sees a whole world of 2**`depth` voxels per side, whatever is in it.
-
-    Parameters
-    ----------
-    depth
-        Levels of the world.
-    size
-        Columns and rows of the frame.
-    """
+    """Make the camera that sees a whole world of 2**`depth` voxels per side, whatever is in it."""
     axes = _axes(np.array(THREE_QUARTER), np.array([0.0, 1.0, 0.0]))
     focal = focal_length(size)
     side = float(1 << depth)
@@ -111,12 +97,7 @@ def frame_world(depth: int, size: tuple[int, int]) -> Camera:
 def refit(camera: Camera, made_for: tuple[int, int], size: tuple[int, int]) -> Camera:
     """Give a camera that was made for frames of one size the same angle across the shorter side of another.
 
-    Parameters
-    ----------
-    camera
-        Any camera; one without a direction stays as it is.
-    made_for, size
-        Columns and rows of the old frames and of the new ones.
+    A camera without a direction stays as it is.
     """
     registers = np.array((camera.look, camera.right, camera.up), dtype=np.float64)
     if size == made_for or not registers.any():

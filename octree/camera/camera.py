@@ -59,7 +59,7 @@ def camera_from_registers(position: ArrayLike, look: ArrayLike, right: ArrayLike
     if place.shape != (3,) or not np.all(np.abs(place) < 2**31 / POSITION_UNITS - 1):
         raise ValueError(f"camera position {place.tolist()} is not three numbers that fit signed 32 bits of 1/16 voxel")
     return Camera(
-        position=_triple(np.rint(place * POSITION_UNITS)),
+        position=as_triple(np.rint(place * POSITION_UNITS)),
         look=_register("look", look),
         right=_register("right", right),
         up=_register("up", up),
@@ -80,9 +80,10 @@ def _register(name: str, values: ArrayLike) -> Triple:
     array = np.asarray(values)
     if array.shape != (3,) or not np.all(array == np.rint(array)) or not np.all(np.abs(array) < REGISTER_LIMIT):
         raise ValueError(f"camera {name} {array.tolist()} is not three whole numbers of signed 16 bits")
-    return _triple(array)
+    return as_triple(array)
 
 
-def _triple(values: NDArray[np.generic]) -> Triple:
+def as_triple(values: NDArray[np.generic]) -> Triple:
+    """Return three whole numbers of an array."""
     x, y, z = (int(value) for value in values.tolist())
     return x, y, z

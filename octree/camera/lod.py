@@ -14,17 +14,8 @@ LOD_SCALE_BITS = 20
 def lod_scale(camera: Camera, cell: float = 1.0) -> int:
     """Compute 2**20 / (cell |right|), rounded down: what tells rays how wide the cells are that they stop at.
 
-    Parameters
-    ----------
-    camera
-        The camera. All its pixels are as wide as those in the middle, along right.
-    cell
-        Width of the widest cell that rays stop at, in pixels, above 0.
-
-    Returns
-    -------
-    int
-        1 … 2**20 - 1; 0, which switches the level of detail off, if right is zero.
+    `cell` is the width of the widest of these, in pixels, above 0; all pixels are as wide as those in the middle, along
+    right. The result is 1 … 2**20 - 1, or 0, which switches the level of detail off, if right is zero.
 
     Examples
     --------

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.octree.camera.camera import DIRECTION_LIMIT, REGISTER_LIMIT, Triple
+from voxrt.octree.camera.camera import DIRECTION_LIMIT, REGISTER_LIMIT, as_triple
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -25,22 +25,11 @@ SAMPLES = (1, 2, 4)
 
 
 def sample_cameras(camera: Camera, size: tuple[int, int], samples: int) -> tuple[Camera, ...]:
-    """Give the cameras of the samples of a picture: its rows of samples from the top, each from the left.
+    """Give the ``samples**2`` cameras of the samples of a picture: rows of samples from the top, each from the left.
 
-    Parameters
-    ----------
-    camera
-        The camera of the picture.
-    size
-        Columns and rows.
-    samples
-        Samples per pixel on each axis: one of :data:`SAMPLES`. With 1 it is the camera itself.
-
-    Returns
-    -------
-    tuple[Camera, ...]
-        ``samples**2`` cameras. Their looks are moved to the middles of equal parts of a pixel, rounded to whole
-        registers. Where a register would not fit, all looks are shortened alike, by less than a thousandth.
+    `samples`, one of :data:`SAMPLES`, is per pixel on each axis. With 1 it is the camera itself. The looks are moved to
+    the middles of equal parts of a pixel, rounded to whole registers. Where a register would not fit, all looks are
+    shortened alike, by less than a thousandth.
 
     Examples
     --------
@@ -59,21 +48,11 @@ def sample_cameras(camera: Camera, size: tuple[int, int], samples: int) -> tuple
     longest = max(int(np.abs(moved).max()) for moved in looks)
     if longest >= REGISTER_LIMIT:
         looks = [np.sign(moved) * (np.abs(moved) * (REGISTER_LIMIT - 1) // longest) for moved in looks]
-    return tuple(replace(camera, look=_triple(moved), right=_triple(right), up=_triple(up)) for moved in looks)
+    return tuple(replace(camera, look=as_triple(moved), right=as_triple(right), up=as_triple(up)) for moved in looks)
 
 
 def average_samples(pictures: Iterable[NDArray[np.uint8]]) -> NDArray[np.uint8]:
-    """Average pictures in linear light.
-
-    Parameters
-    ----------
-    pictures
-        One or more: uint8, shape (H, W, 3), sRGB.
-
-    Returns
-    -------
-    NDArray[np.uint8]
-        Shape (H, W, 3), sRGB: rounded to the nearest value, halves up.
+    """Average one or more pictures in linear light: uint8, shape (H, W, 3), sRGB, rounded to nearest, halves up.
 
     Examples
     --------
@@ -89,17 +68,9 @@ def average_samples(pictures: Iterable[NDArray[np.uint8]]) -> NDArray[np.uint8]:
 def average_cut_out(pictures: Iterable[NDArray[np.uint8]], hits: Iterable[NDArray[np.bool_]]) -> NDArray[np.uint8]:
     """Average what is seen of a scene in linear light, on a transparent background.
 
-    Parameters
-    ----------
-    pictures
-        One or more: uint8, shape (H, W, 3), sRGB.
-    hits
-        For each of them bool, shape (H, W): the pixels that show the scene and not the background.
-
-    Returns
-    -------
-    NDArray[np.uint8]
-        Shape (H, W, 4): sRGB of the samples that hit, and the share of samples that do, 0 … 255; all 0 where none does.
+    The pictures, one or more, are uint8, shape (H, W, 3), sRGB. Each has its `hits`, bool, shape (H, W): the pixels
+    that show the scene. Returns uint8, shape (H, W, 4): sRGB of the samples that hit, and the share of samples that do,
+    0 … 255; all 0 where none does.
     """
     masks = list(hits)
     light = [_LIGHT[picture] * mask[..., None] for picture, mask in zip(pictures, masks, strict=True)]
@@ -116,11 +87,6 @@ def _room(camera: Camera, size: tuple[int, int]) -> int:
     reach = rows[0] + rows[1] * (width // 2 + 1) + rows[2] * (height // 2 + 1)
     largest, longest = int(rows.max()), int(reach.max())
     return max(1, min((REGISTER_LIMIT - 1) // max(1, largest), (DIRECTION_LIMIT - 1) // max(1, longest)))
-
-
-def _triple(values: NDArray[np.int64]) -> Triple:
-    x, y, z = values.tolist()
-    return x, y, z
 
 
 def _encoded(light: NDArray[np.int64], count: NDArray[np.int64]) -> NDArray[np.uint8]:

@@ -11,16 +11,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.octree import Octree, Rom
+from voxrt.octree.morton import positions
 from voxrt.sim import _bake
-from voxrt.sim.baking.daylight import Daylight, sky_directions, sun_direction
-from voxrt.sim.baking.surface_triangles import surface_triangles
+from voxrt.sim.baking.daylight import Daylight
 from voxrt.voxelize import Material
 from voxrt.voxelize.arguments import instance, whole
+from voxrt.voxelize.object_proxies import proxies
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from voxrt.voxelize import Scene
+    from voxrt.voxelize import Grid, Mesh, Scene
     from voxrt.voxelize.object_proxies import Geometry
 
 MOST_COLOURS = 254
@@ -92,12 +93,13 @@ def bake_light(
     surface = _bake.measure_surface(words, depth, corners, normals, threads)
     sun, sky = (
         _bake.receive_light(words, depth, surface.origins, surface.normals, one.steps, one.units, one.weights, threads)
-        for one in (sun_direction(daylight), sky_directions(daylight.samples))
+        for one in (_bake.sun_direction(daylight.sun), _bake.sky_directions(daylight.samples))
     )
     lit = _bake.light_voxels(
         surface.voxels, surface.cells, sun.received, sky.received, sky.full, _fields(rom), daylight.sun, daylight.sky
     )
-    voxels = _positions(surface.brick_codes, lit.rows.astype(np.int64))
+    rows = lit.rows.astype(np.int64)
+    voxels = positions(surface.brick_codes[rows >> 9].astype(np.int64) << 9 | rows & 511)
     return BakedLight(rom, voxels, lit.sun, lit.sky, lit.colours, surface, lit.rows)
 
 
@@ -105,11 +107,23 @@ def _fields(rom: Rom) -> list[tuple[str, tuple[int, int, int], bool, bool]]:
     return [(one.name, one.colour, one.mirror, one.authored) for one in rom.materials]
 
 
-def _positions(codes: NDArray[np.uint64], rows: NDArray[np.int64]) -> NDArray[np.int32]:
-    """Return voxel coordinates from rows of cells: int32, shape (N, 3)."""
-    code = codes[rows >> 9].astype(np.int64) << 9 | rows & 511
-    found = np.zeros((len(rows), 3), np.int32)
-    for bit in range(16):
-        for axis in range(3):
-            found[:, axis] |= (code >> (3 * bit + axis) & 1).astype(np.int32) << bit
-    return found
+def surface_triangles(scene: Scene, grid: Grid, geometry: Geometry) -> tuple[NDArray[np.float64], NDArray[np.float32]]:
+    """Return the triangles of all objects that are voxelized from their triangles (``src/bake/placed_triangles.h``).
+
+    The corners are float64, shape (T, 3, 3): voxels, grid frame. The normals are float32, shape (T, 3, 3): unit normals
+    of the corners, the author's, turned to the triangle's side. Where the mesh has none, they are smooth over edges
+    with an angle below 45 degrees.
+    """
+    shown = [item for item in scene.objects if proxies(item, geometry) is None and len(item.mesh.triangles)]
+    meshes = {id(item.mesh): item.mesh for item in shown}
+    numbers = {key: number for number, key in enumerate(meshes)}
+    objects = [(numbers[id(item.mesh)], np.ascontiguousarray(item.transform[:3], np.float64)) for item in shown]
+    return _bake.place_triangles([_arrays(mesh) for mesh in meshes.values()], objects, grid.origin, grid.voxel_size)
+
+
+def _arrays(mesh: Mesh) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.float64], NDArray[np.int32]]:
+    positions = np.ascontiguousarray(mesh.positions, np.float64)
+    normals = mesh.normals
+    directions = np.zeros((0, 3)) if normals is None else np.ascontiguousarray(normals.vectors, np.float64)
+    rows = np.zeros((0, 3), np.int32) if normals is None else np.ascontiguousarray(normals.rows)
+    return positions, np.ascontiguousarray(mesh.triangles), directions, rows

@@ -1,10 +1,9 @@
-"""A sun and a sky, and the directions from which their light is sampled."""
+"""A sun and a sky; ``src/bake/light/daylight.h`` has the directions from which their light is sampled."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from voxrt.sim import _bake
 from voxrt.voxelize.arguments import vector, whole
 from voxrt.voxelize.colour.srgb import linear_from_hex
 
@@ -76,22 +75,3 @@ def sky_light(value: float | str) -> tuple[float, float, float]:
     ((0.5, 0.5, 0.5), (1.0, 0.0, 0.0))
     """
     return linear_from_hex("sky", value) if isinstance(value, str) else (value, value, value)
-
-
-def sun_direction(daylight: Daylight) -> _bake.Directions:
-    """Return the direction towards the sun, rounded to integers below 2**10; no row for no sun."""
-    return _bake.sun_direction(daylight.sun)
-
-
-def sky_directions(samples: int) -> _bake.Directions:
-    """Return 2 * samples directions, all around and nearly evenly spread (``src/bake/daylight.h``).
-
-    Their fields: `steps`, int32, shape (K, 3), integers along each direction; `units`, int16, shape (K, 3), the same
-    with length 2**14, rounded; `weights`, int32, shape (K,), radiance, 2**16 for 1.
-
-    Examples
-    --------
-    >>> sky_directions(64).steps.shape
-    (128, 3)
-    """
-    return _bake.sky_directions(samples)

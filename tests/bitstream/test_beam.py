@@ -10,10 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import voxrt
-from voxrt.boards.beam import SCREEN, SCREEN_HZ, BoardTracer, beam_lead, fit_beam, fit_frames
+from voxrt.boards.beam import SCREEN, SCREEN_HZ, BoardTracer, fit_beam, fit_frames
 from voxrt.octree.camera import Camera, look_at
 from voxrt.sim import _model
-from voxrt.views.orbit import orbit
+from voxrt.views.viewpoint import orbit
 
 BUFFER_LINES, LINES = 16, 525  # of the boards: board/designs/board_pkg.sv
 BANDS = 12
@@ -47,16 +47,16 @@ def repeated_rows(rows, line, scale, buffer_lines=BUFFER_LINES):
 )
 def test_a_lead_means_that_no_row_is_repeated(bands, scale, lines):
     rows = [float(cycles) for cycles in bands for _ in range((SCREEN[1] >> scale) // 12)]
-    if beam_lead(rows, 2400, scale, lines) >= 1:
+    if _model.beam_lead(rows, 2400, scale, lines) >= 1:
         assert repeated_rows(rows, 2400, scale, lines) == 0
 
 
 def test_slow_rows_are_late():
     for scale, fast, slow in ((0, 2200, 2300), (1, 4500, 4700), (2, 9000, 9300)):
         rows = SCREEN[1] >> scale
-        assert beam_lead([fast] * rows, 2400, scale, BUFFER_LINES) > 0
+        assert _model.beam_lead([fast] * rows, 2400, scale, BUFFER_LINES) > 0
         # Beyond the blanking and the buffer, slow rows fall behind.
-        assert beam_lead([slow * 1.2] * rows, 2400, scale, BUFFER_LINES) < 0
+        assert _model.beam_lead([slow * 1.2] * rows, 2400, scale, BUFFER_LINES) < 0
         assert repeated_rows([slow * 1.2] * rows, 2400, scale) > 0
 
 

@@ -20,7 +20,7 @@ from voxrt.boards.board_scenes import board_scene, load_scene
 from voxrt.errors import ToolError
 from voxrt.export import Blob
 from voxrt.octree import BOARDS
-from voxrt.views.orbit import orbit
+from voxrt.views.viewpoint import orbit
 
 BLOCK_BITS = 8
 ROWS, BITS = 8 << BLOCK_BITS, 10

@@ -16,7 +16,7 @@ from fakes.ecp5_board import Board
 
 import voxrt
 from voxrt.boards.board_scenes import load_scene
-from voxrt.views.orbit import orbit
+from voxrt.views.viewpoint import orbit
 
 pytest.importorskip("serial", reason="pyserial is not installed")
 

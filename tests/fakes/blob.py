@@ -22,5 +22,5 @@ def blob_of(scene, name: str | None = None) -> bytes:
 
 def mem_files(scene) -> dict[str, bytes]:
     """A scene as a .mem and its .json."""
-    manifest = make_manifest(rom_of(scene), mem_crc32(scene.words), "report")
+    manifest = make_manifest(Blob(rom_of(scene)), mem_crc32(scene.words), "report")
     return {f"{scene.name}.mem": b"".join(mem_pieces(scene.words)), f"{scene.name}.json": manifest_bytes(manifest)}

@@ -13,7 +13,7 @@ from voxrt.boards.beam import SCREEN, fit_beam
 from voxrt.boards.bitstream import make_bitstream, read_board
 from voxrt.boards.board_scenes import board_scene
 from voxrt.export import Blob
-from voxrt.views.orbit import orbit
+from voxrt.views.viewpoint import orbit
 
 SCRIPT = Path(__file__).with_name("make_bitstreams.mjs")
 CASES = [("courtyard.glb", "ulx3s-12f", 7, False), ("house.obj", "ulx3s-45f", 5, True)]

@@ -30,7 +30,7 @@ from voxrt.boards.bitstream import make_bitstream, read_board
 from voxrt.boards.board_scenes import board_scene
 from voxrt.export import Blob, write_rom
 from voxrt.octree.camera import Lighting
-from voxrt.views.orbit import orbit
+from voxrt.views.viewpoint import orbit
 from voxrt.voxelize import EMPTY
 
 if TYPE_CHECKING:

@@ -16,6 +16,7 @@ from voxrt import sim
 from voxrt.octree.camera import Camera
 from voxrt.rtl.configurations import read_configurations
 from voxrt.sim import _model
+from voxrt.sim.engine_arguments import registers_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -76,7 +77,7 @@ def fit_beam(
     raises SimulatorError if that ray tracer is missing, has no such lanes, or cannot hold the scene.
     """
     config = configuration_of(tracer.lanes, tracer.ray_clocks, lighting)
-    registers = np.array([(c.position, c.look, c.right, c.up) for c in cameras], dtype=np.int32)
+    registers = np.array([registers_of(camera) for camera in cameras])
     search = _model.BeamSearch(registers, tracer.clock_hz, tracer.buffer_lines)
     progress(0, search.total)
     while not search.ended:
@@ -117,19 +118,6 @@ def fit_frames(
     # A frame starts at a vertical blanking.
     screens = math.ceil(cycles * SCREEN[0] * SCREEN[1] * SCREEN_HZ / tracer.clock_hz)
     return BeamFit(0, cycles, 0.0, SCREEN_HZ / max(1, screens))
-
-
-def beam_lead(rows: Sequence[float], line: float, scale: int, buffer_lines: int) -> float:
-    """Return by how many lines of the screen each row of a picture is early, at least; negative where one is late.
-
-    `rows` has the cycles that each row takes, `line` those of a line of the screen. A row is shown on 2**scale lines.
-
-    Examples
-    --------
-    >>> beam_lead([1000.0] * 480, 2400, 0, 16) > 0, beam_lead([2500.0] * 480, 2400, 0, 16) > 0
-    (True, False)
-    """
-    return _model.beam_lead(rows, line, scale, buffer_lines)
 
 
 def configuration_of(lanes: int, ray_clocks: int, lighting: Lighting) -> str:

@@ -14,6 +14,7 @@ from voxrt.export import Blob, read_any
 from voxrt.octree import RomError
 from voxrt.options.shared import PREVIEW_SIZE
 from voxrt.serve.scene_process import ChildReader
+from voxrt.sim.engine_arguments import palette_of
 from voxrt.views.pictures import animation_camera
 from voxrt.voxelize.assets import SUFFIXES
 
@@ -33,15 +34,14 @@ ASSET_READER_SUFFIXES = (*_MEMORY_SUFFIXES, *sorted(SUFFIXES))
 def board_scene(blob: Blob) -> Scene:
     """Make the scene of a memory, with its author's camera, or with one that sees all of it."""
     rom = blob.rom
-    colours, mirrors = np.zeros((256, 3), dtype=np.uint8), np.zeros(256, dtype=np.bool_)
-    for number, material in enumerate(rom.materials):
-        colours[number], mirrors[number] = material.colour, material.mirror
+    mirrors = np.zeros(256, dtype=np.bool_)
+    mirrors[: len(rom.materials)] = [material.mirror for material in rom.materials]
     camera = animation_camera(blob, PREVIEW_SIZE)
     return Scene(
         rom.name,
         rom.octree.depth,
         rom.octree.words,
-        colours,
+        palette_of(rom),
         mirrors,
         camera,
         blob.lighting,

@@ -16,7 +16,8 @@ from voxrt.building.result import BuildResult
 from voxrt.building.view import with_view
 from voxrt.building.writing import named_settings, write_result
 from voxrt.octree import Animation, AnimationFrame
-from voxrt.options.build_options import DEFAULT_DEPTH, merge_options
+from voxrt.options.build_options import DEFAULT_DEPTH, BuildOptions
+from voxrt.options.option import merge
 from voxrt.plans.plan import fit_plan, plan_build
 from voxrt.plans.run_plan import run_here
 from voxrt.plans.stage_clock import StageClock
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from voxrt.octree import Octree
-    from voxrt.options.build_options import BuildOptions
     from voxrt.options.keywords import BuildKeywords
     from voxrt.plans.estimate import BuildEstimate
     from voxrt.sources.frames import FrameSources
@@ -89,7 +89,7 @@ def build_animation(
     >>> built.animation.roots
     (1, 2)
     """
-    options = merge_options("build_animation", options, keywords)
+    options = merge("build_animation", BuildOptions, options, keywords)
     _refuse_options(options)
     frames = open_frames(assets, options, times)
     first, count = frames.sources[0], len(frames.sources)

@@ -29,59 +29,27 @@ _KEYS = {"position", "look", "right", "up"}
 
 @dataclass(frozen=True, eq=False, slots=True)
 class PictureJob:
-    """What all pictures of a path have in common.
-
-    Attributes
-    ----------
-    rom
-        The memory.
-    options
-        How it is rendered.
-    check
-        Whether both engines render each picture.
-    """
+    """What all pictures of a path have in common."""
 
     rom: Rom
     options: RenderOptions
-    check: bool
+    check: bool  # whether both engines render each picture
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class PathPicture:
-    """A picture of a path.
+    """A picture of a path."""
 
-    Attributes
-    ----------
-    number
-        That of its camera, counted from 0.
-    frame
-        The picture.
-    wrong_pixels
-        Pixels that differ between the engines; None if that was not asked for.
-    """
-
-    number: int
+    number: int  # that of its camera, counted from 0
     frame: Frame
-    wrong_pixels: int | None
+    wrong_pixels: int | None  # that differ between the engines; None if that was not asked for
 
 
 def read_cameras(path: str | os.PathLike[str], rom: Rom, size: tuple[int, int]) -> list[Camera]:
     """Read a file of cameras: JSON, a list of objects with any of `position`, `look`, `right` and `up`.
 
     They mean what the options of ``voxrt render`` of these names mean, three numbers each. What a camera does not say
-    is chosen to show the whole scene.
-
-    Parameters
-    ----------
-    path
-        The file.
-    rom, size
-        The memory, and columns and rows of the pictures.
-
-    Raises
-    ------
-    ViewpointError
-        The file cannot be read, or says something else.
+    is chosen to show the whole scene. ViewpointError if the file cannot be read, or says something else.
 
     Examples
     --------
@@ -104,13 +72,7 @@ def read_cameras(path: str | os.PathLike[str], rom: Rom, size: tuple[int, int]) 
 
 
 def take_picture(job: PictureJob, number: int, camera: Camera) -> PathPicture:
-    """Render a picture, here or on a worker.
-
-    Raises
-    ------
-    ToolError
-        It cannot be rendered.
-    """
+    """Render a picture, here or on a worker; ToolError if it cannot be rendered."""
     try:
         if not job.check:
             return PathPicture(number, render(job.rom, camera, job.options), None)
@@ -125,10 +87,7 @@ def take_pictures(
 ) -> Iterator[PathPicture]:
     """Render the pictures of a path, in its order; on a cluster if one is named, each by one task.
 
-    Raises
-    ------
-    ToolError
-        A picture cannot be rendered, or the cluster is not there or lost.
+    ToolError if a picture cannot be rendered, or the cluster is not there or lost.
     """
     with open_workers(scheduler, workers, remedy="start it, and this command, again") as found:
         yield from in_order(found.completed(take_picture, list(enumerate(cameras)), (job,)))

@@ -11,7 +11,8 @@ from voxrt.building.memory import make_memory
 from voxrt.building.output_files import output_files
 from voxrt.building.view import with_view
 from voxrt.building.writing import named_settings, write_result
-from voxrt.options.build_options import merge_options
+from voxrt.options.build_options import BuildOptions
+from voxrt.options.option import merge
 from voxrt.plans.plan import fit_plan
 from voxrt.plans.run_plan import choose_runner
 from voxrt.plans.stage_clock import StageClock
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from voxrt.building.result import BuildResult
-    from voxrt.options.build_options import BuildOptions, Fill, UpAxis
+    from voxrt.options.build_options import Fill, UpAxis
     from voxrt.options.keywords import BuildKeywords
     from voxrt.plans.by_workers import ClusterProgress
     from voxrt.plans.estimate import BuildEstimate
@@ -95,7 +96,7 @@ def build(
     >>> voxrt.build("examples/house.obj", options=options).solid_voxels < built.solid_voxels
     True
     """
-    options = merge_options("build", options, keywords)
+    options = merge("build", BuildOptions, options, keywords)
     source = open_source(asset, options)
     _check_workers(source, output)
     files = output_files(source.name, source.file_name, output, options.preview)

@@ -6,9 +6,9 @@ from contextlib import ExitStack
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from voxrt import export
 from voxrt.building.view import preview
 from voxrt.export.atomic import write_together
+from voxrt.export.rom_files import write_words
 from voxrt.options.build_options import BuildOptions
 from voxrt.options.option import options_of
 from voxrt.outputs import writing
@@ -81,22 +81,8 @@ def _write(files: OutputFiles, result: BuildResult, dialect: str) -> dict[str, P
             if result.preview is not None:
                 write_together(pictures)
         else:
-            written = export.write_rom(
-                files.words.parent,
-                result.rom,
-                stem=files.words.stem,
-                suffix=files.words.suffix,
-                dialect=dialect,
-                objects=result.objects,
-                warnings=result.warnings,
-                seconds=result.seconds,
-                source=result.source,
-                view=result.view,
-                lighting=result.lighting,
-                baked=result.bake,
-                animation=result.animation,
-                beside=pictures,
-            )
+            words = files.words
+            written = write_words(words.parent, words.stem, words.suffix, result.blob, dialect, beside=pictures)
             outputs = {"mem": written.mem, "manifest": written.manifest}
     if files.preview is not None and result.preview is not None:
         outputs["preview"] = files.preview

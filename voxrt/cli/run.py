@@ -68,13 +68,7 @@ def run(arguments: Sequence[str]) -> ExitCode:
 
 
 def run_command(arguments: Sequence[str]) -> None:
-    """Run a command line.
-
-    Raises
-    ------
-    UsageError
-        It cannot be understood.
-    """
+    """Run a command line; UsageError if it cannot be understood."""
     if not arguments or arguments[0] in HELP_FLAGS:
         from voxrt.cli.line.help_text import overview  # noqa: PLC0415 - most commands do without
 

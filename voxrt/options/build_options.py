@@ -6,14 +6,14 @@ this module imports no heavy library.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence  # type hints are read at run time
+from collections.abc import Sequence  # type hints are read at run time
 from dataclasses import dataclass
 from os import PathLike
 from typing import Literal, TypeAlias, get_args
 
 from voxrt.options import notations
 from voxrt.options.kinds import FLAG, one_of, real, text, texts, whole
-from voxrt.options.option import OptionConflictError, check_options, documented, merge, option
+from voxrt.options.option import OptionConflictError, check_options, documented, option
 from voxrt.options.shared import (
     ALLOW_OUTSIDE,
     BACKGROUND,
@@ -173,28 +173,3 @@ class BuildOptions:
                 f"{{lod}} has its own dialect, and {self.dialect} has no mean materials; leave one of them out"
             )
         check_options(self)
-
-
-def merge_options(function: str, options: BuildOptions | None, keywords: Mapping[str, object]) -> BuildOptions:
-    """Return options with the keywords of a call in their place.
-
-    Parameters
-    ----------
-    function
-        What was called, for errors.
-    options
-        None for the defaults.
-    keywords
-        Options by name.
-
-    Raises
-    ------
-    TypeError, ValueError
-        `options` are none, there is no option of such a name, or it is out of range.
-
-    Examples
-    --------
-    >>> merge_options("build", None, {"depth": 5}).depth
-    5
-    """
-    return merge(function, BuildOptions, options, keywords)

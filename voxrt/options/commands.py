@@ -7,24 +7,12 @@ from typing import Any, NamedTuple
 
 
 class Command(NamedTuple):
-    """A command.
+    """A command."""
 
-    Attributes
-    ----------
-    purpose
-        What it does, in a line.
-    table
-        The module and the class of its options, in :mod:`voxrt.options`.
-    example
-        A command line.
-    more
-        What the help says besides.
-    """
-
-    purpose: str
-    table: str
-    example: str
-    more: str = ""
+    purpose: str  # what it does, in a line
+    table: str  # the module and the class of its options, in voxrt.options
+    example: str  # a command line
+    more: str = ""  # what the help says besides
 
     def options(self) -> type[Any]:
         """Return the table of its options, a frozen dataclass."""

@@ -21,38 +21,19 @@ if TYPE_CHECKING:
 class Kind:
     """A kind of values.
 
-    Attributes
-    ----------
-    metavar
-        What a value is called in the help.
-    read
-        Returns the value that a text of the command line means. ValueError: it means none.
-    check
-        Takes the name of an option and a value, and returns the value converted exactly. TypeError, ValueError: it is
-        none of this kind.
-    write
-        Returns the text of a value, as :attr:`read` takes it.
-    choices
-        The texts of all values, if they are few.
-    is_flag
-        Whether the name of the option alone means True.
-    is_optional
-        Whether the name of the option alone has a meaning, which is that of an empty text.
-    is_file
-        Whether values are names of files.
-    many
-        Whether the option may stand more than once; its value is a tuple.
+    `read` returns the value that a text of the command line means; ValueError if it means none. `check` takes the name
+    of an option and a value, and returns the value converted exactly; TypeError or ValueError if it is of another kind.
     """
 
-    metavar: str
+    metavar: str  # what a value is called in the help
     read: Callable[[str], Any]
     check: Callable[[str, Any], Any]
-    write: Callable[[Any], str] = str
-    choices: tuple[str, ...] = ()
-    is_flag: bool = False
-    is_optional: bool = False
-    is_file: bool = False
-    many: bool = False
+    write: Callable[[Any], str] = str  # returns the text of a value, as `read` takes it
+    choices: tuple[str, ...] = ()  # the texts of all values, if they are few
+    is_flag: bool = False  # the name of the option alone means True
+    is_optional: bool = False  # the name of the option alone has a meaning, which is that of an empty text
+    is_file: bool = False  # values are names of files
+    many: bool = False  # the option may stand more than once; its value is a tuple
 
 
 def plain(name: str) -> str:

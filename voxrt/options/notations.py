@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from math import inf, isfinite
 from os import PathLike
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
-from voxrt.options.backgrounds import read_background
 from voxrt.options.kinds import FLAG, Kind, as_it_is, exact, file, plain, read_whole, several, show
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from voxrt.sim import Background
 
 FrameChoice: TypeAlias = tuple[float, float, int] | Literal["files"]
 """The frames of an animation: start, stop and count, or the assets themselves."""
@@ -172,6 +173,34 @@ def _read_pixel(text: str) -> tuple[int, int]:
 
 PIXEL = Kind("X,Y", _read_pixel, as_it_is)
 """Column and row of a pixel."""
+
+BACKGROUNDS: dict[str, tuple[int, int, int]] = {"dark": (24, 28, 36), "light": (236, 240, 244)}
+"""Named colours, sRGB. ``"transparent"`` is a background too: it suits pages of any colour."""
+
+
+def read_background(name: str, value: object) -> Background:
+    """Return the background that is meant: ``"transparent"``, a name, ``"#rrggbb"``, or three numbers of 0 … 255.
+
+    ValueError, which calls it `name`, if it is none of these.
+
+    Examples
+    --------
+    >>> read_background("background", "#204060")
+    (32, 64, 96)
+    """
+    if isinstance(value, str):
+        if value == "transparent":
+            return "transparent"
+        if value in BACKGROUNDS:
+            return BACKGROUNDS[value]
+        if re.fullmatch("#[0-9a-fA-F]{6}", value):
+            return int(value[1:3], 16), int(value[3:5], 16), int(value[5:7], 16)
+    elif isinstance(value, Sequence) and len(value) == 3:
+        red, green, blue = (channel if type(channel) is int and 0 <= channel <= 255 else -1 for channel in value)
+        if min(red, green, blue) >= 0:
+            return red, green, blue
+    raise ValueError(f"{name} {value!r} is not {', '.join(BACKGROUNDS)}, transparent or a colour such as #204060")
+
 
 COLOUR = Kind("COLOUR", lambda text: read_background("the background", text), read_background)
 """A background."""

@@ -27,40 +27,19 @@ ARGUMENTS = "Arguments"
 class Option:
     """An option of the Python API, of a command, or of both.
 
-    Attributes
-    ----------
-    kind
-        The values that it takes.
-    default
-        Its default; :data:`dataclasses.MISSING` if it must be given.
-    group
-        Its heading in the help; None for an option of the Python API alone.
-    help
-        What it does, in a sentence or two. ``{name}`` stands for another option, however that is spelled.
-    details
-        What else there is to say: the short help of a command leaves it out.
-    flags
-        Its names on the command line; without them, the name of the field with dashes.
-    metavar
-        What its value is called; that of its kind if it is empty.
-    python
-        What is to be said of it in Python alone.
-    is_rare
-        Whether the short help of a command names it alone, without its text.
-    manifest
-        Whether the manifest of a build names it: always, or where it is not the default.
+    In `help` and `details`, ``{name}`` stands for another option, however that is spelled.
     """
 
     kind: Kind
-    default: Any
-    group: str | None
-    help: str
-    details: str = ""
-    flags: tuple[str, ...] = ()
-    metavar: str = ""
-    python: str = ""
-    is_rare: bool = False
-    manifest: Literal["never", "always", "changed"] = "never"
+    default: Any  # MISSING if it must be given
+    group: str | None  # its heading in the help; None for an option of the Python API alone
+    help: str  # what it does, in a sentence or two
+    details: str = ""  # what else there is to say: the short help of a command leaves it out
+    flags: tuple[str, ...] = ()  # its names on the command line; without them, the name of the field with dashes
+    metavar: str = ""  # what its value is called; that of its kind if it is empty
+    python: str = ""  # what is to be said of it in Python alone
+    is_rare: bool = False  # the short help of a command names it alone, without its text
+    manifest: Literal["never", "always", "changed"] = "never"  # whether a manifest names it; changed: not the default
 
     @property
     def text(self) -> str:
@@ -132,7 +111,16 @@ def check_options(table: Any) -> None:  # noqa: ANN401 - any table
 
 
 def merge(function: str, table: type[_T], options: _T | None, keywords: Mapping[str, Any]) -> _T:
-    """Return a table of options with the keywords of a call in their place; `function` is what was called."""
+    """Return a table of options, None for the defaults, with the keywords of a call; `function` is what was called.
+
+    TypeError or ValueError if `options` are no such table, there is no option of such a name, or one is out of range.
+
+    Examples
+    --------
+    >>> from voxrt import BuildOptions
+    >>> merge("build", BuildOptions, None, {"depth": 5}).depth
+    5
+    """
     from voxrt.voxelize.arguments import instance  # noqa: PLC0415 - NumPy comes with it, and --help must be instant
 
     merged = instance("options", table() if options is None else options, table)

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from voxrt.plans.open_workers import open_workers
-from voxrt.plans.tile_making import block_voxelizer, tiles_key
 from voxrt.plans.tile_store import TileStore, sum_tallies
-from voxrt.plans.tile_tasks import TileJob, inherited_scene, make_tile, merge_tiles
+from voxrt.plans.tile_tasks import TileJob, block_voxelizer, inherited_scene, make_tile, merge_tiles, tiles_key
 from voxrt.sources.source import open_source
 
 if TYPE_CHECKING:
@@ -45,22 +44,12 @@ _LEAST_SIDE = 512
 
 @dataclass(frozen=True, slots=True)
 class ClusterProgress:
-    """How far a cluster is with a build.
+    """How far a cluster is with a build."""
 
-    Attributes
-    ----------
-    done, tiles
-        Finished tiles, and all.
-    workers
-        Workers that are connected.
-    bytes
-        Bytes of the finished tiles.
-    """
-
-    done: int
-    tiles: int
-    workers: int
-    bytes: int
+    done: int  # finished tiles
+    tiles: int  # all of them
+    workers: int  # that are connected
+    bytes: int  # of the finished tiles
 
 
 def run_by_workers(

@@ -28,21 +28,6 @@ _BYTES_PER_COLOURED_VOXEL = 8
 class BuildEstimate:
     """What a build will take, to about a factor of two.
 
-    Attributes
-    ----------
-    seconds
-        Wall-clock seconds.
-    bytes
-        Memory at the peak.
-    disk
-        Bytes on the disk while it is built, besides the output.
-    surface
-        Voxels of the surface.
-    least
-        Bytes of memory that the program and the triangles take in any case.
-    width
-        Voxels of the grid, along x or y, that the scene spans; 0 if that is not known.
-
     Examples
     --------
     >>> str(BuildEstimate(200.0, 6 << 30))
@@ -51,12 +36,12 @@ class BuildEstimate:
     '3 minutes, 2.0 GB of memory and 9.0 GB of disk'
     """
 
-    seconds: float
-    bytes: int
-    disk: int = 0
-    surface: int = 0
-    least: int = 0
-    width: int = 0
+    seconds: float  # by the clock on the wall
+    bytes: int  # of memory at the peak
+    disk: int = 0  # bytes while it is built, besides the output
+    surface: int = 0  # voxels of it
+    least: int = 0  # bytes of memory that the program and the triangles take in any case
+    width: int = 0  # voxels of the grid, along x or y, that the scene spans; 0 if that is not known
 
     def __str__(self) -> str:
         minutes = round(self.seconds / 60)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from voxrt import octree, voxelize
-from voxrt.plans.tile_making import block_voxelizer, finish_tile, tiles_key
 from voxrt.plans.tile_store import MemoryTiles, sum_tallies, tile_name
+from voxrt.plans.tile_tasks import block_voxelizer, finish_tile, tiles_key
 from voxrt.voxelize import VoxelizationReport
 
 if TYPE_CHECKING:

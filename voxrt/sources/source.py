@@ -49,14 +49,8 @@ class Source:
     def load(self) -> Scene:
         """Load the scene, without the objects that the options ignore.
 
-        Raises
-        ------
-        TypeError, ValueError
-            The asset is nothing that can be built, or its arrays are not those of a mesh.
-        AssetError
-            The file cannot be read, is malformed, or says something that cannot be honoured.
-        DoesNotFitError
-            More than 255 materials.
+        TypeError or ValueError if the asset is nothing that can be built; AssetError if the file cannot be read or
+        honoured; DoesNotFitError for more than 255 materials.
         """
         options = self.options
         if self.file is None:

@@ -1,4 +1,4 @@
-"""Cameras from all, some or no registers, and the author's camera and light.
+"""Cameras from all, some or no registers, around a scene, and the author's camera and light.
 
 All cameras made here are right-handed, right = look x up, so that text in a scene reads correctly. Registers are small
 integers. The position is computed from these integers, not from the real numbers before rounding, so that the scene
@@ -14,9 +14,11 @@ import numpy as np
 from voxrt import octree, sim
 from voxrt.octree import Rom
 from voxrt.octree.camera import THREE_QUARTER, Camera, Lighting, eye_that_sees, focal_length, look_at
-from voxrt.voxelize.arguments import instance, whole_array
+from voxrt.voxelize.arguments import instance, whole, whole_array
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
     from voxrt.octree.camera import Triple
@@ -127,6 +129,33 @@ def authored_camera(viewpoint: Viewpoint, grid: Grid, size: tuple[int, int]) -> 
         return look_at(eye, target, size=size, up=up, **wanted)
     except ValueError as error:
         raise ViewpointError(f"the scene's camera: {error}") from error
+
+
+def orbit(rom: Rom, size: tuple[int, int], count: int = 128, *, roots: Sequence[int] = (0,)) -> list[Camera]:
+    """Make cameras on a circle around a scene: the default view, turned about the vertical in equal steps.
+
+    The first camera sees the upright cylinder around the scene, so the scene fits each picture; so do all frames of an
+    animation, whose `roots` are given. The cameras, 1 ... 4096, are counterclockwise, seen from above. TypeError or
+    ValueError where an argument is of the wrong type or out of range.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> rom = voxrt.build("examples/house.obj", depth=4).rom
+    >>> cameras = orbit(rom, (640, 480), 4)
+    >>> cameras[0].position[1] == cameras[2].position[1], cameras[0].look == cameras[2].look
+    (True, False)
+    """
+    from voxrt.sim import _model  # noqa: PLC0415 - builds do without
+
+    instance("rom", rom, Rom)
+    count = whole("count", count, 1, 4096)
+    width, height = whole_array("size", size, (2,), np.int64, low=1, high=1 << 14).tolist()
+    points = sim.outline(rom.octree) if len(roots) == 1 else sim.outline_frames(rom.octree, roots)
+    return [
+        Camera(*(tuple(triple) for triple in registers))
+        for registers in _model.orbit(points, width, height, count).tolist()
+    ]
 
 
 def stands_inside(rom: Rom, camera: Camera) -> bool:

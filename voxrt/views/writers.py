@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -22,45 +21,18 @@ if TYPE_CHECKING:
     WritePane: TypeAlias = Callable[[Path, Pane], None]
 
 
-@dataclass(frozen=True, slots=True)
-class Writer:
-    """How the files of one suffix are written.
-
-    `form` is what the file is, for people. `write_pane` writes the octants that a pane shows: all of a memory, or those
-    that a cut leaves. It is None for files that hold a memory with its words.
-    """
-
-    form: str
-    write_pane: WritePane | None = None
-
-
-WRITERS: dict[str, Writer] = {
-    ".mem": Writer("words for $readmemh, with a manifest"),
-    ".coe": Writer("words for AMD (Xilinx) tools, with a manifest"),
-    ".mif": Writer("words for Intel (Altera) tools, with a manifest"),
-    ".bin": Writer("words of 32 bits, least significant byte first, with a manifest"),
-    ".blob": Writer("a whole scene in one file, for boards"),
-    ".vox": Writer("a MagicaVoxel scene", lambda path, pane: write_vox(path, pane.rom, pane.high)),
-    ".npz": Writer("NumPy arrays of the solid voxels", lambda path, pane: write_npz(path, pane.rom, pane.high)),
-    ".ply": Writer("a PLY mesh of the visible sides", lambda path, pane: write_ply(path, pane.rom, pane.mesh())),
-    ".glb": Writer("a glTF scene of the visible sides", lambda path, pane: write_glb(path, pane.rom, pane.mesh())),
-    ".vtu": Writer("octants for ParaView and PyVista", lambda path, pane: write_octants(path, pane.grid())),
-    ".html": Writer(
-        "a page that shows the octants", lambda path, pane: write_page(path, pane.rom, pane.mesh(), pane.faces)
-    ),
-}
-"""How files are written, by their suffix."""
-
-WRITABLE_SUFFIXES = tuple(WRITERS)
-"""The suffixes that :func:`convert` writes."""
-
 PANE_WRITERS: dict[str, WritePane] = {
-    suffix: writer.write_pane for suffix, writer in WRITERS.items() if writer.write_pane is not None
+    ".vox": lambda path, pane: write_vox(path, pane.rom, pane.high),
+    ".npz": lambda path, pane: write_npz(path, pane.rom, pane.high),
+    ".ply": lambda path, pane: write_ply(path, pane.rom, pane.mesh()),
+    ".glb": lambda path, pane: write_glb(path, pane.rom, pane.mesh()),
+    ".vtu": lambda path, pane: write_octants(path, pane.grid()),
+    ".html": lambda path, pane: write_page(path, pane.rom, pane.mesh(), pane.faces),
 }
-"""The writers of files that can hold a part of a memory."""
+"""How the octants that a pane shows are written, all of a memory or those that a cut leaves, by the file's suffix."""
 
-WORD_WRITERS = frozenset(WRITERS) - set(PANE_WRITERS)
-"""The suffixes of files that hold a memory with its words, and all frames of an animation."""
+WRITABLE_SUFFIXES = (*export.WRITABLE_SUFFIXES, *PANE_WRITERS)
+"""The suffixes that :func:`convert` writes. Files of the first ones hold a memory with its words and all its frames."""
 
 
 def convert(memory: Blob | Rom, target: str | os.PathLike[str], *, dialect: str = "report") -> tuple[Path, ...]:
@@ -109,11 +81,11 @@ def convert(memory: Blob | Rom, target: str | os.PathLike[str], *, dialect: str 
     blob = memory if isinstance(memory, Blob) else Blob(instance("memory", memory, Rom))
     path = Path(target)
     suffix = path.suffix.lower()
-    if suffix not in WRITERS:
+    if suffix not in WRITABLE_SUFFIXES:
         raise RomError(f"{path}: is not a format to write; name one of {', '.join(WRITABLE_SUFFIXES)}")
     check_folder(path.parent)
     with writing(path):
-        if suffix in WORD_WRITERS:
+        if suffix not in PANE_WRITERS:
             return export.convert(blob, path, dialect=dialect)
         PANE_WRITERS[suffix](path, Pane(blob.rom))
     return (path,)

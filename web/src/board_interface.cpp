@@ -5,7 +5,7 @@
 
 #include <voxrt/octree/words/encoded_rows.h>
 #include <voxrt/sim/views/beam.h>
-#include <voxrt/sim/views/orbit.h>
+#include <voxrt/sim/views/framing.h>
 
 #include <array>
 #include <optional>

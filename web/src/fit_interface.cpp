@@ -6,7 +6,6 @@
 #include <voxrt/octree/budget/fit_candidates.h>
 #include <voxrt/octree/budget/sight_costs.h>
 #include <voxrt/octree/build/coarsen.h>
-#include <voxrt/octree/pool/breadth_first.h>
 #include <voxrt/octree/query/diff.h>
 #include <voxrt/octree/sight/surface.h>
 #include <voxrt/octree/words/verify.h>
@@ -45,9 +44,7 @@ std::array<uint8_t, 768> palette_of(const std::vector<voxelize::TableMaterial>& 
 }
 
 Words fit(const Words& whole, const std::vector<voxelize::TableMaterial>& materials, size_t limit, bool flat) {
-    octree::BlockPool pool;
-    const octree::Node root = octree::coarsen(memory_of(whole), 0, pool);
-    const Words shared = octree::breadth_first_words(pool, root);
+    const Words shared = octree::coarsened(memory_of(whole), 0);
     Words chosen = shared;
     if (shared.size() > limit) {
         std::vector<octree::Colour> colours;

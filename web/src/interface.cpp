@@ -12,7 +12,6 @@
 #include "memory.h"
 
 #include <voxrt/octree/build/coarsen.h>
-#include <voxrt/octree/pool/breadth_first.h>
 #include <voxrt/octree/query/leaves.h>
 #include <voxrt/octree/query/query.h>
 #include <voxrt/octree/words/validate.h>
@@ -89,12 +88,8 @@ EXPORT(vx_depth) int vx_depth(const octree::Word* words, size_t count) {
 EXPORT(vx_level_that_fits) int vx_level_that_fits(size_t words) {
     return guarded([&] {
         unsigned level = 0;
-        for (; level < loaded().depth(); ++level) {
-            octree::BlockPool pool;
-            const octree::Node root = octree::coarsen(loaded().memory(), level, pool);
-            if (octree::breadth_first_words(pool, root).size() <= words)
-                break;
-        }
+        while (level < loaded().depth() && octree::coarsened(loaded().memory(), level).size() > words)
+            ++level;
         return static_cast<int>(level);
     });
 }
@@ -114,9 +109,7 @@ EXPORT(vx_voxel_counts) const double* vx_voxel_counts() {
 EXPORT(vx_outline) int vx_outline() {
     return guarded([&] {
         const unsigned depth = loaded().depth();
-        octree::BlockPool pool;
-        const octree::Node root = octree::coarsen(loaded().memory(), depth > 6 ? depth - 6 : 0, pool);
-        const octree::Words words = octree::breadth_first_words(pool, root);
+        const octree::Words words = octree::coarsened(loaded().memory(), depth > 6 ? depth - 6 : 0);
         const int64_t side = int64_t{1} << depth;
         octree::LeafWalk walk({words.data(), words.size(), depth}, {{0, 0, 0}, {side, side, side}}, true);
         outline.clear();

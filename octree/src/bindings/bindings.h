@@ -45,6 +45,16 @@ inline Memory memory_of(const Vector<Word>& words, unsigned depth) {
     return {words.data(), words.shape(0), depth};
 }
 
+/// Calls `work` with a memory, or with two of one depth, as run() does.
+template <class Work> auto run_on(const Vector<Word>& words, unsigned depth, Work work) {
+    const Memory memory = memory_of(words, depth);
+    return run([&] { return work(memory); });
+}
+template <class Work> auto run_on(const Vector<Word>& first, const Vector<Word>& second, unsigned depth, Work work) {
+    const Memory a = memory_of(first, depth), b = memory_of(second, depth);
+    return run([&] { return work(a, b); });
+}
+
 /// Binds what is made of a memory: sharing, graphs, budgets, surfaces, hidden voxels, means.
 void bind_derived(nanobind::module_& m);
 

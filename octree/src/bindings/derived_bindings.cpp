@@ -1,7 +1,6 @@
 #include "../budget/fit_candidates.h"
 #include "../budget/sight_costs.h"
 #include "../build/coarsen.h"
-#include "../pool/breadth_first.h"
 #include "../pool/shared_size.h"
 #include "../sight/hidden.h"
 #include "../sight/interior.h"
@@ -20,11 +19,8 @@ using namespace nb::literals;
 namespace voxrt::octree {
 namespace {
 
-using python::NamedTuple;
 using python::to_numpy;
 using python::to_read_only_numpy;
-
-NamedTuple surface_change_type;
 
 nb::object bind_encoded_rows(const Vector<Word>& words, unsigned block_bits) {
     if (block_bits > 29)
@@ -34,18 +30,10 @@ nb::object bind_encoded_rows(const Vector<Word>& words, unsigned block_bits) {
     return to_numpy(std::move(rows), {count});
 }
 
-std::size_t bind_shared_words(const Vector<Word>& words, unsigned depth) {
-    const Memory memory = memory_of(words, depth);
-    return run([&] { return shared_words(memory); });
-}
+std::size_t bind_shared_words(const Vector<Word>& words, unsigned depth) { return run_on(words, depth, shared_words); }
 
 nb::object bind_coarsen(const Vector<Word>& words, unsigned depth, unsigned level) {
-    const Memory memory = memory_of(words, depth);
-    return words_to_numpy(run([&] {
-        BlockPool pool;
-        const Node root = coarsen(memory, level, pool);
-        return breadth_first_words(pool, root);
-    }));
+    return words_to_numpy(run_on(words, depth, [&](const Memory& memory) { return coarsened(memory, level); }));
 }
 
 nb::object bind_fit_candidates(const Vector<Word>& words, unsigned depth, std::size_t limit,
@@ -64,28 +52,22 @@ nb::object bind_fit_candidates(const Vector<Word>& words, unsigned depth, std::s
 }
 
 nb::object bind_surface_change(const Vector<Word>& first, const Vector<Word>& second, unsigned depth) {
-    const Memory a = memory_of(first, depth);
-    const Memory b = memory_of(second, depth);
-    const SurfaceChange change = run([&] { return surface_change(a, b); });
-    return surface_change_type(change.surface, change.changed);
+    const SurfaceChange change = run_on(first, second, depth, surface_change);
+    return nb::make_tuple(change.surface, change.changed);
 }
 
 nb::object bind_hidden_voxels(const Vector<Word>& words, unsigned depth) {
-    const Memory memory = memory_of(words, depth);
-    return words_to_numpy(run([&] { return hidden_voxels(memory); }));
+    return words_to_numpy(run_on(words, depth, hidden_voxels));
 }
 
 nb::object bind_fill_hidden(const Vector<Word>& words, const Vector<Word>& hidden, unsigned depth,
                             std::uint8_t material) {
-    const Memory memory = memory_of(words, depth);
-    const Memory hidden_memory = memory_of(hidden, depth);
-    return words_to_numpy(run([&] { return fill_hidden(memory, hidden_memory, material); }));
+    return words_to_numpy(
+        run_on(words, hidden, depth, [&](const Memory& a, const Memory& b) { return fill_hidden(a, b, material); }));
 }
 
 nb::object bind_share_hidden(const Vector<Word>& words, const Vector<Word>& hidden, unsigned depth) {
-    const Memory memory = memory_of(words, depth);
-    const Memory hidden_memory = memory_of(hidden, depth);
-    return words_to_numpy(run([&] { return share_hidden(memory, hidden_memory); }));
+    return words_to_numpy(run_on(words, hidden, depth, share_hidden));
 }
 
 nb::object bind_mean_materials(const Vector<Word>& words, unsigned depth, const Rows<std::uint16_t, 3>& light) {
@@ -103,7 +85,6 @@ nb::object bind_mean_materials(const Vector<Word>& words, unsigned depth, const 
 } // namespace
 
 void bind_derived(nb::module_& m) {
-    surface_change_type = NamedTuple(m, "SurfaceChange", {"surface", "changed"}, "What surface_change() returns.");
     m.def("encoded_rows", &bind_encoded_rows, "words"_a.noconvert(), "block_bits"_a);
     m.def("shared_words", &bind_shared_words, "words"_a.noconvert(), "depth"_a);
     m.def("coarsen", &bind_coarsen, "words"_a.noconvert(), "depth"_a, "level"_a);

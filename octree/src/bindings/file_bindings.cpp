@@ -39,16 +39,12 @@ nb::object bind_read_mem_text(const nb::bytes& text) {
     return to_numpy(std::move(words), {count});
 }
 
-void bind_assembly_add(Assembly& assembly, const Vector<Word>& words) {
+template <class Any> void bind_add(Any& assembly, const Vector<Word>& words) {
     run([&] { assembly.add(words.data(), words.shape(0)); });
 }
 
 nb::object bind_assembly_words(const Assembly& assembly) {
     return words_to_numpy(run([&] { return assembly.words(); }));
-}
-
-void bind_disk_assembly_add(DiskAssembly& assembly, const Vector<Word>& words) {
-    run([&] { assembly.add(words.data(), words.shape(0)); });
 }
 
 // Paths are bytes: a file's name need not be text.
@@ -71,7 +67,7 @@ void bind_files(nb::module_& m) {
                  return new Assembly(depth, expected_blocks);
              }),
              "depth"_a, "expected_blocks"_a)
-        .def("add", &bind_assembly_add, "words"_a.noconvert())
+        .def("add", &bind_add<Assembly>, "words"_a.noconvert())
         .def("words", &bind_assembly_words);
     nb::register_exception_translator([](const std::exception_ptr& failure, void*) {
         try {
@@ -87,7 +83,7 @@ void bind_files(nb::module_& m) {
                  return new DiskAssembly(depth, path_of(folder), cache_bytes);
              }),
              "depth"_a, "folder"_a, "cache_bytes"_a)
-        .def("add", &bind_disk_assembly_add, "words"_a.noconvert())
+        .def("add", &bind_add<DiskAssembly>, "words"_a.noconvert())
         .def("write", &bind_disk_assembly_write, "path"_a);
 }
 

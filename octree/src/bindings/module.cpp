@@ -27,7 +27,7 @@ using python::to_read_only_numpy;
 using Volume = nb::ndarray<const std::uint8_t, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 using Corner = std::array<std::int64_t, 3>;
 
-NamedTuple verdict_type, bounds_type, difference_type, regions_type, leaves_type;
+NamedTuple verdict_type;
 
 Box box_of(const Corner& low, const Corner& high) {
     for (unsigned axis = 0; axis < 3; ++axis)
@@ -38,7 +38,7 @@ Box box_of(const Corner& low, const Corner& high) {
 nb::object to_python(const Corner& corner) { return nb::make_tuple(corner[0], corner[1], corner[2]); }
 
 nb::object to_python(const std::optional<Box>& bounds) {
-    return bounds ? bounds_type(to_python(bounds->low), to_python(bounds->high)) : nb::none();
+    return bounds ? nb::object(nb::make_tuple(to_python(bounds->low), to_python(bounds->high))) : nb::none();
 }
 
 nb::object bind_build(unsigned depth, const Vector<std::uint64_t>& brick_codes,
@@ -54,19 +54,12 @@ nb::object bind_build(unsigned depth, const Vector<std::uint64_t>& brick_codes,
     require(octant_levels.shape(0) == octants && octant_materials.shape(0) == octants,
             "the octant arrays differ in length");
     require(threads >= 0 && threads <= 1024, "threads must be 0 ... 1024");
-    const voxelize::VoxelsView view{depth,
-                                    bricks,
-                                    brick_codes.data(),
-                                    brick_masks.data(),
-                                    brick_materials.data(),
-                                    brick_rows.data(),
-                                    cells.shape(0),
-                                    cells.data(),
-                                    octants,
-                                    octant_codes.data(),
-                                    octant_levels.data(),
-                                    octant_materials.data()};
-    return words_to_numpy(run([&] { return build(view, threads); }));
+    return words_to_numpy(run([&] {
+        return build({depth, bricks, brick_codes.data(), brick_masks.data(), brick_materials.data(), brick_rows.data(),
+                      cells.shape(0), cells.data(), octants, octant_codes.data(), octant_levels.data(),
+                      octant_materials.data()},
+                     threads);
+    }));
 }
 
 nb::object bind_build_dense(const Volume& cells, unsigned depth) {
@@ -84,29 +77,10 @@ nb::object bind_build_points(const Vector<std::uint64_t>& codes, const Vector<st
     return words_to_numpy(run([&] { return build_points(codes.data(), materials.data(), codes.shape(0), depth); }));
 }
 
-const char* name_of(Fault fault) {
-    switch (fault) {
-    case Fault::length:
-        return "length";
-    case Fault::tag:
-        return "tag";
-    case Fault::misaligned:
-        return "misaligned";
-    case Fault::range:
-        return "range";
-    case Fault::cycle:
-        return "cycle";
-    case Fault::too_deep:
-        return "too-deep";
-    case Fault::none:
-        break;
-    }
-    return "";
-}
-
 nb::object bind_validate(const Vector<Word>& words, unsigned depth) {
+    static constexpr const char* names[] = {"", "length", "tag", "misaligned", "range", "cycle", "too-deep"};
     const Verdict verdict = run([&] { return validate(words.data(), words.shape(0), depth); });
-    return verdict_type(name_of(verdict.fault), verdict.address, verdict.least_depth);
+    return verdict_type(names[static_cast<int>(verdict.fault)], verdict.address, verdict.least_depth);
 }
 
 nb::object bind_materials_at(const Vector<Word>& words, unsigned depth, const Rows<std::int64_t, 3>& points) {
@@ -118,8 +92,7 @@ nb::object bind_materials_at(const Vector<Word>& words, unsigned depth, const Ro
 }
 
 nb::object bind_leaf_counts(const Vector<Word>& words, unsigned depth) {
-    const Memory memory = memory_of(words, depth);
-    return to_numpy(run([&] { return leaf_counts(memory); }), {std::size_t{depth} + 1, 256});
+    return to_numpy(run_on(words, depth, leaf_counts), {std::size_t{depth} + 1, 256});
 }
 
 nb::object bind_count_in_box(const Vector<Word>& words, unsigned depth, const Corner& low, const Corner& high) {
@@ -130,8 +103,7 @@ nb::object bind_count_in_box(const Vector<Word>& words, unsigned depth, const Co
 }
 
 nb::object bind_solid_bounds(const Vector<Word>& words, unsigned depth) {
-    const Memory memory = memory_of(words, depth);
-    return to_python(run([&] { return solid_bounds(memory); }));
+    return to_python(run_on(words, depth, solid_bounds));
 }
 
 void bind_fill_region(const Vector<Word>& words, unsigned depth, const Corner& low,
@@ -147,16 +119,12 @@ void bind_fill_region(const Vector<Word>& words, unsigned depth, const Corner& l
 }
 
 nb::object bind_diff(const Vector<Word>& first, const Vector<Word>& second, unsigned depth) {
-    const Memory a = memory_of(first, depth);
-    const Memory b = memory_of(second, depth);
-    const Difference found = run([&] { return diff(a, b); });
-    return difference_type(found.appeared, found.vanished, found.recoloured, to_python(found.bounds));
+    const Difference found = run_on(first, second, depth, diff);
+    return nb::make_tuple(found.appeared, found.vanished, found.recoloured, to_python(found.bounds));
 }
 
 nb::object bind_differing_regions(const Vector<Word>& first, const Vector<Word>& second, unsigned depth) {
-    const Memory a = memory_of(first, depth);
-    const Memory b = memory_of(second, depth);
-    const std::vector<Region> regions = run([&] { return differing_regions(a, b); });
+    const std::vector<Region> regions = run_on(first, second, depth, differing_regions);
     std::vector<std::int64_t> low, high;
     std::vector<std::uint64_t> appeared, vanished, recoloured;
     for (const Region& region : regions) {
@@ -167,9 +135,9 @@ nb::object bind_differing_regions(const Vector<Word>& first, const Vector<Word>&
         recoloured.push_back(region.recoloured);
     }
     const std::size_t count = regions.size();
-    return regions_type(to_numpy(std::move(low), {count, 3}), to_numpy(std::move(high), {count, 3}),
-                        to_numpy(std::move(appeared), {count}), to_numpy(std::move(vanished), {count}),
-                        to_numpy(std::move(recoloured), {count}));
+    return nb::make_tuple(to_numpy(std::move(low), {count, 3}), to_numpy(std::move(high), {count, 3}),
+                          to_numpy(std::move(appeared), {count}), to_numpy(std::move(vanished), {count}),
+                          to_numpy(std::move(recoloured), {count}));
 }
 
 // A LeafWalk with the words that it reads.
@@ -189,8 +157,8 @@ public:
             materials.push_back(leaf.material);
         }
         const std::size_t count = leaves.size();
-        return leaves_type(to_numpy(std::move(corners), {count, 3}), to_numpy(std::move(levels), {count}),
-                           to_numpy(std::move(materials), {count}));
+        return nb::make_tuple(to_numpy(std::move(corners), {count, 3}), to_numpy(std::move(levels), {count}),
+                              to_numpy(std::move(materials), {count}));
     }
 
 private:
@@ -198,23 +166,13 @@ private:
     LeafWalk walk_;
 };
 
-void add_result_types(nb::module_& m) {
-    verdict_type = NamedTuple(m, "Verdict", {"fault", "address", "least_depth"},
-                              "What validate() found; fault is empty where the words are an octree.");
-    bounds_type = NamedTuple(m, "Bounds", {"low", "high"}, "Voxels from low up to and without high.");
-    difference_type = NamedTuple(m, "Difference", {"appeared", "vanished", "recoloured", "bounds"},
-                                 "What diff() returns: counts of voxels, and their Bounds or None.");
-    regions_type = NamedTuple(m, "Regions", {"low", "high", "appeared", "vanished", "recoloured"},
-                              "What differing_regions() returns: a row per region.");
-    leaves_type = NamedTuple(m, "Leaves", {"corners", "levels", "materials"}, "What LeafWalk.next() returns.");
-}
-
 } // namespace
 } // namespace voxrt::octree
 
 NB_MODULE(_native, m) {
     using namespace voxrt::octree;
-    add_result_types(m);
+    verdict_type = NamedTuple(m, "Verdict", {"fault", "address", "least_depth"},
+                              "What validate() found; fault is empty where the words are an octree.");
     m.def("build", &bind_build, "depth"_a, "brick_codes"_a.noconvert(), "brick_masks"_a.noconvert(),
           "brick_materials"_a.noconvert(), "brick_rows"_a.noconvert(), "cells"_a.noconvert(),
           "octant_codes"_a.noconvert(), "octant_levels"_a.noconvert(), "octant_materials"_a.noconvert(), "threads"_a);

@@ -1,7 +1,6 @@
 #include "fit_candidates.h"
 
 #include "../build/coarsen.h"
-#include "../pool/breadth_first.h"
 #include "../sight/hidden.h"
 #include "budget.h"
 
@@ -16,12 +15,6 @@ constexpr unsigned kLevelsKept = 3;
 
 /// With fewer blocks there is time to start from a world four times as fine as what fits, not twice.
 constexpr std::size_t kManyBlocks = 30'000;
-
-Words coarsened(const Memory& memory, unsigned level) {
-    BlockPool pool;
-    const Node root = coarsen(memory, level, pool);
-    return breadth_first_words(pool, root);
-}
 
 } // namespace
 

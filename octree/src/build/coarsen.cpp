@@ -1,5 +1,7 @@
 #include "coarsen.h"
 
+#include "../pool/breadth_first.h"
+
 #include <voxrt/voxelize/work/interrupt.h>
 
 #include <algorithm>
@@ -75,6 +77,11 @@ private:
 
 Node coarsen(const Memory& memory, unsigned level, BlockPool& pool) {
     return Coarsening(memory, level, pool).node(memory.root(), memory.depth);
+}
+
+Words coarsened(const Memory& memory, unsigned level) {
+    BlockPool pool;
+    return breadth_first_words(pool, coarsen(memory, level, pool));
 }
 
 } // namespace voxrt::octree

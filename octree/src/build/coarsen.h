@@ -12,4 +12,7 @@ namespace voxrt::octree {
 /// words are no octree.
 Node coarsen(const Memory& memory, unsigned level, BlockPool& pool);
 
+/// The words of that memory, breadth-first.
+Words coarsened(const Memory& memory, unsigned level);
+
 } // namespace voxrt::octree

@@ -95,8 +95,7 @@ Words fill_hidden(const Memory& memory, const Memory& hidden, std::uint8_t mater
 }
 
 Words share_hidden(const Memory& memory, const Memory& hidden) {
-    BlockPool canonical;
-    Words best = breadth_first_words(canonical, coarsen(memory, 0, canonical));
+    Words best = coarsened(memory, 0);
     const Words words = best;
     const Memory whole{words.data(), words.size(), memory.depth};
     const auto keep_smaller = [&](Words other) {

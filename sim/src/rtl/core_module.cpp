@@ -30,12 +30,15 @@
 #include "core.h"
 #include "one_call.h"
 
+#include <voxrt/voxelize/bindings/python.h>
+
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace nb = nanobind;
@@ -93,14 +96,13 @@ public:
 
     nb::object read_memory(std::size_t address, std::size_t count) {
         check_words(address, count);
-        auto* words = new std::vector<uint32_t>(count);
-        nb::capsule owner(words, [](void* p) noexcept { delete static_cast<std::vector<uint32_t>*>(p); });
+        std::vector<uint32_t> words(count);
         {
             OneCall call(busy_);
             nb::gil_scoped_release released;
-            core_->read_memory(address, *words);
+            core_->read_memory(address, words);
         }
-        return nb::cast(nb::ndarray<nb::numpy, uint32_t>(words->data(), {words->size()}, owner));
+        return python::to_numpy(std::move(words), {count});
     }
 
     void write_memory(std::size_t address, const Words& words) {
@@ -136,11 +138,7 @@ public:
     bool run(uint64_t clocks) {
         OneCall call(busy_);
         nb::gil_scoped_release released;
-        return core_->run(clocks, [] {
-            nb::gil_scoped_acquire acquired;
-            if (PyErr_CheckSignals() != 0)
-                throw nb::python_error();
-        });
+        return core_->run(clocks, check_signals);
     }
 
     nb::object frame() {
@@ -150,9 +148,7 @@ public:
             throw std::runtime_error("the video stream has " + sink.fault());
         if (!sink.complete() || width_ == 0)
             throw std::runtime_error("no complete frame");
-        auto* bytes = new std::vector<uint8_t>(sink.bytes());
-        nb::capsule owner(bytes, [](void* p) noexcept { delete static_cast<std::vector<uint8_t>*>(p); });
-        return nb::cast(nb::ndarray<nb::numpy, uint8_t>(bytes->data(), {height_, width_, 3}, owner));
+        return python::to_numpy(std::vector<uint8_t>(sink.bytes()), {height_, width_, 3});
     }
 
 private:

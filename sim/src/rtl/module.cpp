@@ -38,14 +38,18 @@
 #include "design.h"
 #include "one_call.h"
 
+#include <voxrt/voxelize/bindings/python.h>
+
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <initializer_list>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace nb = nanobind;
@@ -90,23 +94,12 @@ int16_t direction_register(int32_t value) {
     return static_cast<int16_t>(value);
 }
 
-nb::object array(std::vector<std::size_t> shape, uint8_t*& data) {
-    std::size_t size = 1;
-    for (std::size_t n : shape)
-        size *= n;
-    data = new uint8_t[size]();
-    nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<uint8_t*>(p); });
-    return nb::cast(nb::ndarray<nb::numpy, uint8_t>(data, shape.size(), shape.data(), owner));
-}
-
-std::vector<std::string> features_of(const Configuration& configuration) {
+// The names of the flags that are set.
+std::vector<std::string> names_of(std::initializer_list<std::pair<const char*, bool>> flags) {
     std::vector<std::string> names;
-    if (configuration.light)
-        names.emplace_back("light");
-    if (configuration.mirrors)
-        names.emplace_back("mirrors");
-    if (configuration.lod)
-        names.emplace_back("lod");
+    for (const auto& [name, is_set] : flags)
+        if (is_set)
+            names.emplace_back(name);
     return names;
 }
 
@@ -146,14 +139,13 @@ public:
         if (count > memory_words())
             throw std::invalid_argument("the memory has " + std::to_string(memory_words()) + " words, not " +
                                         std::to_string(count));
-        auto* words = new std::vector<uint32_t>;
-        nb::capsule owner(words, [](void* p) noexcept { delete static_cast<std::vector<uint32_t>*>(p); });
+        std::vector<uint32_t> words;
         {
             OneCall call(busy_);
             nb::gil_scoped_release released;
-            *words = design_->read_back(count);
+            words = design_->read_back(count);
         }
-        return nb::cast(nb::ndarray<nb::numpy, uint32_t>(words->data(), {words->size()}, owner));
+        return python::to_numpy(std::move(words), {count});
     }
 
     nb::dict render(const CameraRegisters& camera, long width, long height, long depth, const Materials& materials,
@@ -207,40 +199,28 @@ public:
         if (cached() && !loaded_.is_valid())
             throw std::invalid_argument("this configuration's memory is external: load words first");
 
-        FrameImage image{};
         const auto rows = static_cast<std::size_t>(height), columns = static_cast<std::size_t>(width);
-        nb::dict result;
-        result["colour"] = array({rows, columns, 3}, image.colour);
-        result["material"] = array({rows, columns}, image.material);
-        result["face"] = array({rows, columns}, image.face);
-
+        std::vector<uint8_t> colour(3 * rows * columns), material(rows * columns), face(rows * columns);
         FrameCost cost;
         {
             OneCall call(busy_);
             nb::gil_scoped_release released;
-            cost = design_->render(request, image, [] {
-                nb::gil_scoped_acquire acquired;
-                if (PyErr_CheckSignals() != 0)
-                    throw nb::python_error();
-            });
+            cost = design_->render(request, {colour.data(), material.data(), face.data()}, check_signals);
         }
+        nb::dict result;
+        result["colour"] = python::to_numpy(std::move(colour), {rows, columns, 3});
+        result["material"] = python::to_numpy(std::move(material), {rows, columns});
+        result["face"] = python::to_numpy(std::move(face), {rows, columns});
         result["cycles"] = cost.cycles;
         result["words_read"] = cost.words_read;
         result["word_requests"] = cost.word_requests;
         result["line_requests"] = cost.line_requests;
         result["lines_read"] = cost.lines_read;
-        nb::list errors;
-        if (cost.direction_overflow)
-            errors.append("direction overflow");
-        if (cost.bad_pointer)
-            errors.append("bad pointer");
-        if (cost.step_limit)
-            errors.append("step limit");
-        if (cost.bus_error)
-            errors.append("bus error");
-        if (cost.bus_timeout)
-            errors.append("bus timeout");
-        result["errors"] = errors;
+        result["errors"] = names_of({{"direction overflow", cost.direction_overflow},
+                                     {"bad pointer", cost.bad_pointer},
+                                     {"step limit", cost.step_limit},
+                                     {"bus error", cost.bus_error},
+                                     {"bus timeout", cost.bus_timeout}});
         return result;
     }
 
@@ -269,8 +249,8 @@ NB_MODULE(_rtl, m) {
     m.attr("CONFIGS") = names;
     m.attr("COMPLETE") = VOXRT_RTL_COMPLETE;
     nb::dict features;
-    for (const auto& configuration : voxrt::rtl::configurations)
-        features[configuration.name] = voxrt::rtl::features_of(configuration);
+    for (const auto& [name, make, light, mirrors, lod] : voxrt::rtl::configurations)
+        features[name] = voxrt::rtl::names_of({{"light", light}, {"mirrors", mirrors}, {"lod", lod}});
     m.attr("FEATURES") = features;
     nb::class_<Tracer>(m, "Tracer")
         .def(nb::init<const std::string&>(), "config"_a)

@@ -2,6 +2,8 @@
 // flag.
 #pragma once
 
+#include <nanobind/nanobind.h>
+
 #include <stdexcept>
 
 namespace voxrt::rtl {
@@ -20,5 +22,12 @@ public:
 private:
     bool& busy_;
 };
+
+// Raises what Python's signal handlers raise; called without the GIL, now and then.
+inline void check_signals() {
+    nanobind::gil_scoped_acquire acquired;
+    if (PyErr_CheckSignals() != 0)
+        throw nanobind::python_error();
+}
 
 } // namespace voxrt::rtl

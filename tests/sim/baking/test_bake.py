@@ -7,8 +7,9 @@ from oracles.meshes import box_mesh, icosphere, joined, one_object, scene_of
 
 import voxrt
 from voxrt.octree import census, to_dense
+from voxrt.sim import _bake
 from voxrt.sim.baking.bake import bake_light
-from voxrt.sim.baking.daylight import SKY, SUN, Daylight, sky_directions, sky_light, sun_direction
+from voxrt.sim.baking.daylight import SKY, SUN, Daylight, sky_light
 from voxrt.voxelize import EMPTY, Grid, Material, Scene, SceneObject, assign_colours, fit_grid, voxelize
 
 WHITE = (EMPTY, Material("white", (255, 255, 255)))
@@ -75,7 +76,7 @@ def test_every_voxel_has_the_light_of_rational_rays(daylight):
     light = baked(scene, grid=Grid(4, (0, 0, 0), 1), daylight=daylight)
     cube, surface = to_dense(light.rom.octree), light._surface
     daylight = daylight or Daylight()
-    sky, sun = sky_directions(daylight.samples), sun_direction(daylight)
+    sky, sun = _bake.sky_directions(daylight.samples), _bake.sun_direction(daylight.sun)
     chosen = np.random.default_rng(0).choice(len(light.voxels), 25, replace=False)
     by_voxel = {}
     for row, number in enumerate(surface.voxels.tolist()):
@@ -195,4 +196,4 @@ def test_daylight_is_checked():
         Daylight(sky=(0, -1, 0))
     with pytest.raises(ValueError, match="sky must be a colour like '#9db4d0', not 'blue'"):
         sky_light("blue")
-    assert len(sun_direction(Daylight(sun=(0, 0, 0))).steps) == 0
+    assert len(_bake.sun_direction((0, 0, 0)).steps) == 0

@@ -9,7 +9,7 @@ from oracles.random_worlds import dense_cubes
 
 from voxrt.octree import from_dense
 from voxrt.sim import _bake
-from voxrt.sim.baking.daylight import Daylight, sky_directions, sun_direction
+from voxrt.sim._bake import sky_directions, sun_direction
 
 METHODS = ("rays", "sweep")
 
@@ -84,7 +84,7 @@ def test_the_sun_is_a_rational_ray_of_any_direction(cube, seed, axis):
     voxels = empty_voxels_near(cube, rng, 40)
     normals = unit_normals(rng, len(voxels))
     sun = rng.normal(size=3) if axis is None else np.eye(3)[axis] * rng.choice([-1, 1])
-    directions = sun_direction(Daylight(sun=tuple(sun)))
+    directions = sun_direction(tuple(sun))
     found = receive(cube, voxels, normals, directions)
     assert (found.received.tolist(), found.full.tolist()) == by_hand(cube, voxels, normals, directions)
 
@@ -105,13 +105,13 @@ def test_light_does_not_depend_on_threads():
 
 def test_what_cannot_be_traced_is_refused():
     cube = np.ones((4, 4, 4), np.uint8)
-    up = sun_direction(Daylight(sun=(0, 1, 0)))
+    up = sun_direction((0, 1, 0))
     with pytest.raises(ValueError, match="point 0 lies more than 4 voxels from the box of the solid voxels"):
         receive(cube, [[0, 8, 0]], [[0, 16384, 0]], up)
     with pytest.raises(ValueError, match="this processor has no instruction set 'abacus'"):
         receive(cube, [[0, 4, 0]], [[0, 16384, 0]], up, instructions="abacus")
     with pytest.raises(ValueError, match="a sweep takes steps of at most 16"):
-        receive(cube, [[0, 4, 0]], [[0, 16384, 0]], sun_direction(Daylight(sun=(1, 2, 3))), method="sweep")
+        receive(cube, [[0, 4, 0]], [[0, 16384, 0]], sun_direction((1, 2, 3)), method="sweep")
 
 
 @pytest.mark.parametrize("samples", [1, 3, 64, 500])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from oracles.meshes import icosphere
 
-from voxrt.sim.baking.surface_triangles import surface_triangles
+from voxrt.sim.baking.bake import surface_triangles
 from voxrt.voxelize import EMPTY, CornerNormals, Grid, Material, Scene, SceneObject
 
 GRID = Grid(5, (0, 0, 0), 0.5)

@@ -10,12 +10,10 @@
 #include <voxrt/octree/budget/fit_candidates.h>
 #include <voxrt/octree/budget/sight_costs.h>
 #include <voxrt/octree/build/coarsen.h>
-#include <voxrt/octree/pool/breadth_first.h>
 #include <voxrt/octree/words/encoded_rows.h>
 #include <voxrt/sim/views/beam.h>
 #include <voxrt/sim/views/fit_views.h>
 #include <voxrt/sim/views/framing.h>
-#include <voxrt/sim/views/orbit.h>
 #include <voxrt/sim/views/similarity.h>
 
 #include <array>
@@ -35,9 +33,7 @@ octree::VerifiedMemory verified(const Words& words, unsigned depth) {
 
 void exercise_fits(Random& random, unsigned depth) {
     const Words whole = world(random, depth, kMaterials);
-    octree::BlockPool pool;
-    const Words shared =
-        octree::breadth_first_words(pool, octree::coarsen({whole.data(), whole.size(), depth}, 0, pool));
+    const Words shared = octree::coarsened({whole.data(), whole.size(), depth}, 0);
     std::array<uint8_t, 768> palette{};
     std::vector<octree::Colour> colours;
     for (int i = 0; i < kMaterials; ++i) {
@@ -55,8 +51,7 @@ void exercise_fits(Random& random, unsigned depth) {
     } catch (const octree::DoesNotFit&) {
         // Eight voxels per side are the coarsest world.
         const unsigned level = depth > 3 ? depth - 3 : 0;
-        const Words coarsest =
-            octree::breadth_first_words(pool, octree::coarsen({shared.data(), shared.size(), depth}, level, pool));
+        const Words coarsest = octree::coarsened({shared.data(), shared.size(), depth}, level);
         check(coarsest.size() > limit, "a coarse world does not fit");
         return;
     }

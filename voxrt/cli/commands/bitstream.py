@@ -13,9 +13,8 @@ import voxrt
 from voxrt.cli.inputs.lighting import supported
 from voxrt.cli.results.bitstream_results import BitstreamResult, bitstream_result
 from voxrt.cli.results.build_results import print_json
-from voxrt.cli.terminal.budget_messages import budget_loss, budget_text
 from voxrt.cli.terminal.errors import UsageError
-from voxrt.cli.terminal.messages import summarize, warn
+from voxrt.cli.terminal.messages import budget_loss, budget_text, summarize, warn
 from voxrt.cli.terminal.progress import build_bar, stage_bar, transfer_bar
 from voxrt.options.notations import find_board
 from voxrt.outputs import check_folder, writing
@@ -31,7 +30,7 @@ def run(options: BitstreamCommand) -> None:
     from voxrt.boards.beam import SCREEN, SMALL, fit_beam, fit_frames  # noqa: PLC0415
     from voxrt.boards.bitstream import board_names, load_bitstream, make_bitstream  # noqa: PLC0415 - NumPy comes with it
     from voxrt.boards.board_scenes import board_scene  # noqa: PLC0415
-    from voxrt.views.orbit import orbit  # noqa: PLC0415
+    from voxrt.views.viewpoint import orbit  # noqa: PLC0415
 
     if options.seed is not None and not options.rebuild:
         raise UsageError("--seed is of the placement, which --rebuild makes; give both")

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 
 import voxrt
 from voxrt.building.pipeline import build
-from voxrt.cli.terminal.budget_messages import budget_loss, budget_text
 from voxrt.cli.terminal.errors import UsageError
-from voxrt.cli.terminal.messages import frames_row, picture_cost, summarize, tabulate, warn
+from voxrt.cli.terminal.messages import budget_loss, budget_text, frames_row, picture_cost, summarize, tabulate, warn
 from voxrt.cli.terminal.process_age import process_age
 from voxrt.cli.terminal.progress import build_bar
 from voxrt.options.build_options import BuildOptions

@@ -14,7 +14,7 @@ from voxrt.cli.terminal.errors import UsageError
 from voxrt.cli.terminal.messages import name_file, summarize
 from voxrt.options.shared import PREVIEW_SIZE
 from voxrt.outputs import check_folder, writing
-from voxrt.views.writers import WORD_WRITERS
+from voxrt.views.writers import PANE_WRITERS
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -38,7 +38,7 @@ def run(options: ConvertCommand) -> None:
         if target.suffix.lower() not in voxrt.WRITABLE_SUFFIXES:
             raise UsageError(f"{target}: is not a format to write; name one of {', '.join(voxrt.WRITABLE_SUFFIXES)}")
         check_folder(target.parent)
-        has_frames = target.suffix.lower() in WORD_WRITERS
+        has_frames = target.suffix.lower() not in PANE_WRITERS
         source = read_source(options.source, options.depth, options.from_dialect, material, frames=has_frames)
         files = voxrt.convert(source.blob, target, dialect=options.dialect)
     if options.reporting.json:

@@ -16,6 +16,8 @@ from voxrt.cli.terminal.errors import UsageError
 from voxrt.cli.terminal.messages import summarize
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from voxrt.board.designs.serial_device import SerialDevice
     from voxrt.board.device import Device
     from voxrt.board.scene import Scene
@@ -39,12 +41,12 @@ def run(options: ServeCommand) -> None:
         token = choose_token(options.host, options.token, options.token_file)
     except Refused as refusal:
         raise UsageError(str(refusal)) from refusal
-    first = _read_first(options.scenes[0], options.depth) if options.scenes else None
+    first = read_scene(options.scenes[0], options.depth) if options.scenes else None
     named = {name: _files(path) for name, path in scene_names(options.scenes or _examples()).items()}
     library = SceneLibrary(asset_reader(options.depth), named, asset_reader(options.depth, memory_depth=options.depth))
     server = ServerOptions(options.host, options.port, token, options.origin, options.legacy_port)
     opened = open_device(options.device, options.config)
-    with contextlib.suppress(asyncio.CancelledError):
+    with board_errors(), contextlib.suppress(asyncio.CancelledError):
         asyncio.run(_serve(opened, first, library, server, json=options.reporting.json))
 
 
@@ -56,10 +58,22 @@ def _examples() -> list[Path]:
     return sorted(path.resolve() for path in folder.iterdir() if path.suffix in ASSET_READER_SUFFIXES)
 
 
+@contextlib.contextmanager
+def board_errors() -> Iterator[None]:
+    """Raise what a board says of its scene as a DoesNotFitError, and of itself as a SimulatorError."""
+    from voxrt.board.errors import DeviceError, Refused  # noqa: PLC0415 - most commands do without
+
+    try:
+        yield
+    except Refused as refusal:
+        raise voxrt.DoesNotFitError(str(refusal)) from refusal
+    except DeviceError as error:
+        raise voxrt.SimulatorError(str(error)) from error
+
+
 def open_device(name: str, config: str) -> Device:
     """Open a device: ``model``, ``sim``, ``serial:PORT`` or ``tcp://BOARD:PORT``."""
-    from voxrt.board.errors import DeviceError  # noqa: PLC0415 - it imports NumPy
-    from voxrt.board.simulated.core import open_rtl  # noqa: PLC0415
+    from voxrt.board.simulated.core import open_rtl  # noqa: PLC0415 - it imports NumPy
     from voxrt.board.simulated.model import ModelDevice  # noqa: PLC0415
     from voxrt.board.tcp_device import TOKEN_VARIABLE, open_tcp  # noqa: PLC0415
 
@@ -67,24 +81,16 @@ def open_device(name: str, config: str) -> Device:
         return ModelDevice()
     if name.lower() == "sim":
         return open_rtl(config)
-    try:
+    with board_errors():
         if name.startswith(SERIAL):
             return open_serial_device(name.removeprefix(SERIAL))
         if name.startswith(TCP):
             return open_tcp(name, os.environ.get(TOKEN_VARIABLE, ""))
-    except DeviceError as error:
-        raise voxrt.SimulatorError(str(error)) from error
     raise UsageError(f"--device {name} is no device; there are model, sim, serial:PORT and tcp://BOARD:PORT")
 
 
 def open_serial_device(port: str) -> SerialDevice:
-    """Open the board at a serial line.
-
-    Raises
-    ------
-    DeviceError
-        There is no port of this name, or no board of voxrt at it.
-    """
+    """Open the board at a serial line; DeviceError if there is no port of this name, or no board of voxrt at it."""
     from voxrt.board.designs.serial_device import SerialDevice  # noqa: PLC0415
     from voxrt.board.designs.serial_link import open_serial  # noqa: PLC0415
     from voxrt.board.simulated.model import ModelDevice  # noqa: PLC0415
@@ -92,8 +98,9 @@ def open_serial_device(port: str) -> SerialDevice:
     return SerialDevice(open_serial(port), ModelDevice())
 
 
-def _read_first(path: Path, depth: int | None) -> Scene:
-    from voxrt.boards.board_scenes import load_scene  # noqa: PLC0415
+def read_scene(path: Path, depth: int | None = None) -> Scene:
+    """Read the scene of a file, as a board takes it; RomError if the file cannot be read."""
+    from voxrt.boards.board_scenes import load_scene  # noqa: PLC0415 - it imports NumPy
 
     try:
         return load_scene(path, depth)
@@ -123,7 +130,6 @@ async def _loaded(server: FrameServer, scene: Scene, interrupted: asyncio.Event)
 async def _serve(
     device: Device, first: Scene | None, library: SceneLibrary, options: ServerOptions, *, json: bool
 ) -> None:
-    from voxrt.board.errors import DeviceError, Refused  # noqa: PLC0415
     from voxrt.serve.server import FrameServer  # noqa: PLC0415
 
     interrupted = asyncio.Event()
@@ -142,10 +148,6 @@ async def _serve(
                 + ([("legacy", f"port {server.legacy_port}")] if server.legacy_port is not None else []),
             )
             await interrupted.wait()
-    except Refused as refusal:
-        raise voxrt.DoesNotFitError(str(refusal)) from refusal
-    except DeviceError as error:
-        raise voxrt.SimulatorError(str(error)) from error
     except OSError as error:
         raise UsageError(
             f"cannot listen on {options.host} port {options.port}: {error.strerror or error}; choose another --port"

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import asyncio
+from contextlib import closing
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import voxrt
-from voxrt.cli.commands.serve import SERIAL, TCP, open_device, open_serial_device
+from voxrt.cli.commands.serve import SERIAL, TCP, board_errors, open_device, open_serial_device, read_scene
 from voxrt.cli.inputs.lighting import supported
 from voxrt.cli.results.board_results import UploadResult
 from voxrt.cli.results.build_results import print_json
@@ -29,32 +31,20 @@ def run(options: UploadCommand) -> None:
         raise UsageError("--to and --device exclude each other; give one of them")
     if options.rom.suffix.lower() not in {".mem", ".blob"}:
         raise UsageError(f"{options.rom}: is no .mem or .blob; build it first: voxrt build {options.rom}")
-    scene = _read(options.rom)
+    scene = read_scene(options.rom)
     with transfer_bar() as progress:
         if options.to is not None and options.to.startswith(SERIAL):
             _write_serial(options.rom, scene, options.to.removeprefix(SERIAL), progress, dry_run=options.dry_run)
         elif options.to is not None and not options.to.startswith(TCP):
             asyncio.run(_send(options.rom, scene, options.to, progress, dry_run=options.dry_run))
         else:
-            opened = open_device(options.to or options.device or "model", options.config)
-            try:
+            with closing(open_device(options.to or options.device or "model", options.config)) as opened:
                 _write(scene, opened, progress, dry_run=options.dry_run)
-            finally:
-                opened.close()
     done = "checked; nothing was written" if options.dry_run else "loaded"
     if options.reporting.json:
         print_json(UploadResult(scene.name, scene.depth, len(scene.words), scene.crc32, written=not options.dry_run))
     else:
         summarize(f"{options.rom.name}: {done}", [("words", str(len(scene.words))), ("crc-32", f"{scene.crc32:08X}")])
-
-
-def _read(path: Path) -> Scene:
-    from voxrt.boards.board_scenes import load_scene  # noqa: PLC0415 - it imports NumPy
-
-    try:
-        return load_scene(path)
-    except OSError as error:
-        raise voxrt.RomError(f"{path}: {error}") from error
 
 
 async def _send(path: Path, scene: Scene, url: str, progress: Progress, *, dry_run: bool) -> None:
@@ -86,49 +76,33 @@ def _check_fit(scene: Scene, board: dict[str, Any]) -> None:
 
 def _write_serial(path: Path, scene: Scene, port: str, progress: Progress, *, dry_run: bool) -> None:
     """Let the board at a serial line show the scene and turn, as from its bitstream."""
-    from voxrt.board.errors import DeviceError  # noqa: PLC0415
     from voxrt.boards.beam import SCREEN, BoardTracer, fit_beam  # noqa: PLC0415
-    from voxrt.views.orbit import orbit  # noqa: PLC0415
+    from voxrt.views.viewpoint import orbit  # noqa: PLC0415
 
     rom = voxrt.read_any(path)[0].rom
-    try:
-        device = open_serial_device(port)
-        try:
-            _write(scene, device, progress, dry_run=True)
-            if not dry_run:
-                lighting = supported(scene.lighting or voxrt.Lighting(), device.identity.features)
-                size, scale = SCREEN, 0
-                if not device.frame_buffer:
-                    tracer = BoardTracer(device.lanes, device.ray_clocks, device.clock_hz, device.buffer_lines)
-                    beam = fit_beam(
-                        rom,
-                        orbit(rom, SCREEN),
-                        lighting,
-                        tracer,
-                        progress=lambda done, total: progress("count cycles", done, total),
-                    )
-                    size, scale = beam.size, beam.scale
-                device.prepare_orbit(orbit(rom, size), lighting, scale)
-                _write(scene, device, progress, dry_run=False, loaded=device.loaded())
-        finally:
-            device.close()
-    except DeviceError as error:
-        raise voxrt.SimulatorError(str(error)) from error
+    with board_errors(), closing(open_serial_device(port)) as device:
+        _write(scene, device, progress, dry_run=True)
+        if dry_run:
+            return
+        lighting = supported(scene.lighting or voxrt.Lighting(), device.identity.features)
+        size, scale = SCREEN, 0
+        if not device.frame_buffer:
+            tracer = BoardTracer(device.lanes, device.ray_clocks, device.clock_hz, device.buffer_lines)
+            count = partial(progress, "count cycles")
+            beam = fit_beam(rom, orbit(rom, SCREEN), lighting, tracer, progress=count)
+            size, scale = beam.size, beam.scale
+        device.prepare_orbit(orbit(rom, size), lighting, scale)
+        _write(scene, device, progress, dry_run=False, loaded=device.loaded())
 
 
 def _write(
     scene: Scene, device: Device, progress: Progress, *, dry_run: bool, loaded: LoadedScene | None = None
 ) -> None:
-    from voxrt.board.errors import DeviceError, Refused  # noqa: PLC0415 - only this command needs them
-    from voxrt.board.scene_memory import SceneMemory  # noqa: PLC0415
+    from voxrt.board.scene_memory import SceneMemory  # noqa: PLC0415 - only this command needs it
 
     memory = SceneMemory(device, loaded)
-    try:
+    with board_errors():
         if dry_run:
             memory.check(scene)
         else:
             memory.load(scene, progress)
-    except Refused as refusal:
-        raise voxrt.DoesNotFitError(str(refusal)) from refusal
-    except DeviceError as error:
-        raise voxrt.SimulatorError(str(error)) from error

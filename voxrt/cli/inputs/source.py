@@ -24,21 +24,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Source:
-    """A memory and where it came from.
+    """A memory and where it came from."""
 
-    Attributes
-    ----------
-    blob
-        The memory, with the camera and the light that its file or its scene names.
-    scene
-        The scene that it was built from; None for a memory from a file.
-    warnings
-        What was not honoured or was assumed; they have been printed.
-    """
-
-    blob: Blob
-    scene: voxrt.Scene | None = None
-    warnings: tuple[voxrt.SceneWarning, ...] = ()
+    blob: Blob  # the memory, with the camera and the light that its file or its scene names
+    scene: voxrt.Scene | None = None  # that it was built from; None for a memory from a file
+    warnings: tuple[voxrt.SceneWarning, ...] = ()  # they have been printed
 
     @property
     def rom(self) -> Rom:

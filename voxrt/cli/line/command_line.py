@@ -48,13 +48,7 @@ def asks_for_help(arguments: Sequence[str]) -> bool:
 
 
 def read_options(command: str, arguments: Sequence[str]) -> Any:  # noqa: ANN401 - the table of the command
-    """Read the words behind a command as the table of its options.
-
-    Raises
-    ------
-    UsageError
-        They cannot be understood.
-    """
+    """Read the words behind a command as the table of its options; UsageError if they cannot be understood."""
     options = command_options(command)
     named = {name: option for name, option in options.items() if option.group != ARGUMENTS}
     texts, words = _split(arguments, named)

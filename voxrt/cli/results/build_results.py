@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 
     from voxrt.building.fitting import BudgetFit
     from voxrt.building.result import BuildResult
-    from voxrt.sim import Camera, RenderCost
+    from voxrt.export import RomInfo
+    from voxrt.sim import CacheCost, Camera, RenderCost
     from voxrt.views.pictures import Picture
 
 
@@ -199,15 +200,12 @@ def render_result(picture: Picture, file: Path | None = None, wrong_pixels: int 
         seconds=cost.seconds,
         camera=camera_entry(camera),
         outputs=msgspec.UNSET if file is None else {"picture": name_file(file)},
-        cache=msgspec.UNSET if cost.cache is None else cache_entry(cost),
+        cache=msgspec.UNSET if cost.cache is None else _cache_entry(cost, cost.cache),
         wrong_pixels=msgspec.UNSET if wrong_pixels is None else wrong_pixels,
     )
 
 
-def cache_entry(cost: RenderCost) -> CacheEntry:
-    """Return what a picture cost at the caches, for programs."""
-    cache = cost.cache
-    assert cache is not None
+def _cache_entry(cost: RenderCost, cache: CacheCost) -> CacheEntry:
     return CacheEntry(
         l1_hits=cache.l1_hits,
         l2_hits=cache.l2_hits,
@@ -223,12 +221,6 @@ def camera_entry(camera: Camera) -> CameraEntry:
     return CameraEntry((x / 16, y / 16, z / 16), camera.look, camera.right, camera.up)
 
 
-def print_json(result: msgspec.Struct | list[BuildReport] | list[RenderResult]) -> None:
-    """Print a result on standard output.
-
-    Raises
-    ------
-    OutputError
-        Standard output cannot be written to, other than because nobody reads it any more.
-    """
+def print_json(result: msgspec.Struct | RomInfo | list[BuildReport] | list[RenderResult]) -> None:
+    """Print a result on standard output, as :func:`print_answer` does."""
     print_answer(msgspec.json.format(msgspec.json.encode(result), indent=2).decode() + "\n")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, fields
+from dataclasses import asdict, dataclass, fields
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -11,8 +11,8 @@ import msgspec
 import voxrt
 from voxrt.cli.results.build_results import CameraEntry, camera_entry
 from voxrt.cli.terminal.messages import name_file
-from voxrt.export.info import BoardInfo, LevelInfo, MaterialInfo  # noqa: TC001 - msgspec resolves annotations
-from voxrt.octree import Region  # noqa: TC001
+from voxrt.export import RomInfo
+from voxrt.octree import AnimationFrame, Region  # noqa: TC001 - msgspec resolves annotations
 from voxrt.sim import PixelColour  # noqa: TC001
 from voxrt.voxelize import SceneWarning  # noqa: TC001
 
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from voxrt.export import Blob
-    from voxrt.octree import Animation
     from voxrt.sim import Camera, Likeness, RayPath
     from voxrt.views.depth_likeness import LikenessAtDepth
 
@@ -45,41 +44,15 @@ class WorldEntry(msgspec.Struct, frozen=True):
     """Metres."""
 
 
-class FrameEntry(msgspec.Struct, frozen=True):
-    """A frame of an animation."""
-
-    root: int
-    """The word of the memory that is its root: what the register `root` takes."""
-    words: int
-    """Words of its octree alone."""
-    time: float | None
-    """Its second; null where frames are assets of their own."""
-    name: str
-    """The name of its asset; empty where all frames are of one."""
-
-
-class InfoResult(msgspec.Struct, frozen=True):
+@dataclass(frozen=True, slots=True)
+class InfoResult(RomInfo):
     """``voxrt info --json``: what :class:`voxrt.export.RomInfo` holds, and where the voxels stand."""
 
-    name: str
-    depth: int
-    words: int
-    blocks: int
-    shared_words: int
-    """Words once equal blocks are shared."""
-    unshared_blocks: int
-    """Blocks that it would take without sharing."""
-    voxels: int
-    bounds: tuple[tuple[int, int, int], tuple[int, int, int]] | None
-    """The smallest box that holds the solid voxels: its lowest voxel, and one behind its highest."""
-    levels: tuple[LevelInfo, ...]
-    materials: tuple[MaterialInfo, ...]
-    boards: tuple[BoardInfo, ...]
     world: WorldEntry | None
     """Null for a memory that does not say."""
     mean_materials: int | None = None
     """Blocks that have one, for the level of detail; null for a memory without it."""
-    frames: list[FrameEntry] | None = None
+    frames: tuple[AnimationFrame, ...] | None = None
     """Those of an animation; null for a memory of one scene. All else is then of the first, but for the words."""
 
 
@@ -201,11 +174,6 @@ def trace_result(
     )
 
 
-def frame_entries(animation: Animation) -> list[FrameEntry]:
-    """Tell programs the frames of an animation."""
-    return [FrameEntry(one.root, one.words, one.time, one.name) for one in animation.frames]
-
-
 def info_result(blob: Blob) -> InfoResult:
     """Tell programs what a memory holds."""
     rom = blob.rom
@@ -214,7 +182,7 @@ def info_result(blob: Blob) -> InfoResult:
         **{one.name: getattr(facts, one.name) for one in fields(facts)},
         world=None if rom.grid is None else WorldEntry(rom.grid.origin, rom.grid.voxel_size),
         mean_materials=None if rom.octree.means is None else int((rom.octree.means > 0).sum()),
-        frames=None if blob.animation is None else frame_entries(blob.animation),
+        frames=None if blob.animation is None else blob.animation.frames,
     )
 
 

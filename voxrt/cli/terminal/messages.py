@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
+    from voxrt.building.fitting import BudgetFit
     from voxrt.octree import Animation
     from voxrt.sim import CacheCost, Frame
     from voxrt.voxelize import SceneWarning
@@ -77,10 +78,7 @@ def tabulate(heads: tuple[str, ...], rows: list[tuple[str, ...]], *, answer: boo
 def print_answer(text: str) -> None:
     """Print text that was asked for on standard output.
 
-    Raises
-    ------
-    OutputError
-        Standard output cannot be written to, other than because nobody reads it any more.
+    OutputError if standard output cannot be written to, other than because nobody reads it any more.
     """
     try:
         sys.stdout.write(text.encode(sys.stdout.encoding, "backslashreplace").decode(sys.stdout.encoding))
@@ -114,6 +112,28 @@ def cache_cost(cost: CacheCost, pixels: int) -> str:
     return (
         f"L1 hits {100 * cost.l1_hits:.1f} %, L2 hits {100 * cost.l2_hits:.1f} %, "
         f"{cost.lines_read / pixels:.3f} lines and {cost.bytes_read / pixels:.1f} bytes per pixel"
+    )
+
+
+def budget_loss(budget: BudgetFit) -> str:
+    """Say what a memory that does not fit gives up, and which depth does; nothing if it gives up little."""
+    if budget.lossless is None:
+        return ""
+    depth, words = budget.lossless
+    return (
+        f"{budget.words:,} words give up {budget.fit.percent_changed:.0f} % of the surface; "
+        f"--depth {depth} fits without loss, in {words:,} words"
+    )
+
+
+def budget_text(budget: BudgetFit) -> str:
+    """Say what fitting a budget took."""
+    fit = budget.fit
+    if not (fit.changed or fit.appeared or fit.recoloured):
+        return f"{budget.words:,} words are enough, nothing is given up"
+    return (
+        f"{budget.words:,} of {fit.words_shared:,} words: {fit.percent_changed:.2f} % of the surface changed, "
+        f"PSNR {budget.psnr:.1f} dB, SSIM {budget.ssim:.3f}"
     )
 
 

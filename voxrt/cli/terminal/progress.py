@@ -27,12 +27,7 @@ LARGE = 4 << 30
 class BuildBar:
     """The progress of a build: announces one that is long or large, shows the stage and how much of the time has gone.
 
-    Parameters
-    ----------
-    progress
-        The bar on the terminal; None for no bar.
-    task
-        Its task.
+    `progress` is the bar on the terminal, of which `task` is the task; None for no bar.
     """
 
     def __init__(self, progress: Progress | None = None, task: TaskID | None = None) -> None:

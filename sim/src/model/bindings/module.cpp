@@ -51,7 +51,7 @@ constexpr int kBounceLimit = 15;
 constexpr int32_t kSizeLimit = 1 << 14;
 constexpr int kThreadLimit = 1024;
 
-NamedTuple rendered_pixels, traced_rays, followed_ray, reading_type, explained_pixel;
+NamedTuple rendered_pixels, traced_rays;
 
 // A memory with words of its own, so that nobody changes them after they are verified.
 class OwnedMemory {
@@ -234,11 +234,11 @@ nb::object follow_ray(const OwnedMemory& memory, const Position& origin, const P
     const Hit<WideKey> hit = Ray<WideKey>(memory.verified(), line).trace([&](const Reading<WideKey>& reading) {
         if (readings.size() % 4096 == 4095 && PyErr_CheckSignals() != 0)
             throw nb::python_error();
-        readings.append(reading_type(reading.address, reading.word, reading.level,
-                                     nb::make_tuple(reading.corner[0], reading.corner[1], reading.corner[2]),
-                                     reading.face, to_python(reading.time)));
+        readings.append(nb::make_tuple(reading.address, reading.word, reading.level,
+                                       nb::make_tuple(reading.corner[0], reading.corner[1], reading.corner[2]),
+                                       reading.face, to_python(reading.time)));
     });
-    return followed_ray(hit.material, hit.face, nb::make_tuple(hit.cell[0], hit.cell[1], hit.cell[2]), readings);
+    return nb::make_tuple(hit.material, hit.face, nb::make_tuple(hit.cell[0], hit.cell[1], hit.cell[2]), readings);
 }
 
 nb::object explain_ray(const OwnedMemory& memory, const Palette& materials, const Position& origin,
@@ -258,9 +258,9 @@ nb::object explain_ray(const OwnedMemory& memory, const Palette& materials, cons
         mirrors_met.append(to_tuple(met));
     const nb::object surface = account.surface ? nb::object(to_tuple(*account.surface)) : nb::none();
     static constexpr const char* lights[] = {"none", "lit", "turned away", "shadowed"};
-    return explained_pixel(nb::make_tuple(pixel.colour[0], pixel.colour[1], pixel.colour[2]), mirrors_met, surface,
-                           lights[static_cast<int>(account.light)], to_python(account.brightness.part),
-                           to_python(account.brightness.whole), account.is_mean);
+    return nb::make_tuple(nb::make_tuple(pixel.colour[0], pixel.colour[1], pixel.colour[2]), mirrors_met, surface,
+                          lights[static_cast<int>(account.light)], to_python(account.brightness.part),
+                          to_python(account.brightness.whole), account.is_mean);
 }
 
 using Colours = nb::ndarray<const uint8_t, nb::shape<-1, -1, 3>, nb::c_contig, nb::device::cpu>;
@@ -333,13 +333,6 @@ NB_MODULE(_model, m) {
         NamedTuple(m, "RenderedPixels", {"colour", "material", "face", "words_read"}, "What Memory.render() returns.");
     traced_rays =
         NamedTuple(m, "TracedRays", {"material", "face", "cell", "words_read"}, "What Memory.trace() returns.");
-    followed_ray =
-        NamedTuple(m, "FollowedRay", {"material", "face", "cell", "readings"}, "What Memory.follow() returns.");
-    reading_type =
-        NamedTuple(m, "Reading", {"address", "word", "level", "corner", "axis", "time"}, "A word that a ray read.");
-    explained_pixel =
-        NamedTuple(m, "ExplainedPixel", {"colour", "mirrors", "surface", "light", "part", "whole", "is_mean"},
-                   "What Memory.explain() returns.");
     nb::class_<Stop>(m, "Stop", "Ends frames for good, from any thread.")
         .def(nb::init<>())
         .def("set", &Stop::set, "End the frames that were given this object, and all further ones.");

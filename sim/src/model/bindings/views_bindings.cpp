@@ -1,7 +1,7 @@
 #include "views_bindings.h"
 
 #include "../views/beam.h"
-#include "../views/orbit.h"
+#include "../views/framing.h"
 
 #include <voxrt/voxelize/bindings/python.h>
 
@@ -26,7 +26,7 @@ using python::to_numpy;
 using Points = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using Cameras = nb::ndarray<const int32_t, nb::shape<-1, 4, 3>, nb::c_contig, nb::device::cpu>;
 
-NamedTuple band_type, fit_type;
+NamedTuple band_type;
 
 void append(std::vector<int32_t>& all, const Camera& camera) {
     for (const auto& triple : {camera.position, camera.look, camera.right, camera.up})
@@ -67,16 +67,15 @@ nb::object band_of(const BeamSearch& search) {
 
 nb::object fit_of(const BeamSearch& search) {
     const BeamFit fit = search.fit();
-    return fit_type(fit.scale, fit.cycles_per_pixel, fit.lead, fit.frames_per_second);
+    return nb::make_tuple(fit.scale, fit.cycles_per_pixel, fit.lead, fit.frames_per_second);
 }
 
 } // namespace
 
 void bind_views(nb::module_& m) {
     band_type = NamedTuple(m, "Band", {"camera", "width", "rows"}, "Rows of a picture, as a picture of its own.");
-    fit_type = NamedTuple(m, "BeamFit", {"scale", "cycles_per_pixel", "lead", "frames_per_second"}, "beam.h");
     m.def("orbit", &orbit_of, nb::arg("points"), nb::arg("width"), nb::arg("height"), nb::arg("count"),
-          "Cameras around points, float64 (N, 3), voxels: their registers, int32, shape (count, 4, 3). orbit.h");
+          "Cameras around points, float64 (N, 3), voxels: their registers, int32, shape (count, 4, 3). framing.h");
     m.def("beam_lead", &beam_lead, nb::arg("rows"), nb::arg("line"), nb::arg("scale"), nb::arg("buffer_lines"),
           "beam.h");
     nb::class_<BeamSearch>(m, "BeamSearch", "The largest pictures that a board traces in time: beam.h.")
@@ -87,7 +86,7 @@ void bind_views(nb::module_& m) {
         .def_prop_ro("total", &BeamSearch::total, "Pictures, at most.")
         .def("band", &band_of, "The band whose cycles are wanted next. ValueError: the search has ended.")
         .def("give", &BeamSearch::give, nb::arg("cycles"), "Take the cycles of that band.")
-        .def("fit", &fit_of, "What was found.");
+        .def("fit", &fit_of, "Scale, cycles per pixel, lead and frames per second: BeamFit of beam.h.");
 }
 
 } // namespace voxrt::sim

@@ -1,4 +1,4 @@
-// Binds orbit.h and beam.h.
+// Binds orbits and beam.h.
 #pragma once
 
 #include <nanobind/nanobind.h>

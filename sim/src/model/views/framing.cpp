@@ -1,7 +1,6 @@
 #include "framing.h"
 
 #include <voxrt/octree/build/coarsen.h>
-#include <voxrt/octree/pool/breadth_first.h>
 #include <voxrt/octree/query/leaves.h>
 
 #include <algorithm>
@@ -21,6 +20,7 @@ constexpr Point kThreeQuarter = {-0.62, -0.68, -1.0};
 constexpr double kMargin = 0.085; // of the frame's side, left free on each side
 constexpr double kRegisterLimit = 1 << 15, kDirectionLimitOfFrames = 1 << 20;
 constexpr unsigned kOutlineLevels = 6;
+constexpr int kCorners = 64; // of the polygon that stands for the circle around the scene
 
 Point cross(const Point& a, const Point& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
@@ -114,10 +114,8 @@ Camera scaled(const Axes& axes, double focal, int32_t width, int32_t height) {
 
 std::vector<Point> outline_points(const octree::VerifiedMemory& memory) {
     const unsigned depth = memory.depth();
-    octree::BlockPool pool;
-    const octree::Node root =
-        octree::coarsen(memory.memory(), depth > kOutlineLevels ? depth - kOutlineLevels : 0, pool);
-    const octree::Words words = octree::breadth_first_words(pool, root);
+    const unsigned level = depth > kOutlineLevels ? depth - kOutlineLevels : 0;
+    const octree::Words words = octree::coarsened(memory.memory(), level);
     const int64_t side = int64_t{1} << depth;
     std::vector<Point> points;
     const auto add = [&points](const auto& corner, double size) {
@@ -177,6 +175,44 @@ Camera frame_along(const Point& look, const std::vector<Point>& points, int32_t 
     for (int axis = 0; axis < 3; ++axis)
         camera.position[axis] = static_cast<int32_t>(std::floor(16 * eye[axis] + 0.5));
     return camera;
+}
+
+std::vector<Camera> orbit(const std::vector<Point>& points, int32_t width, int32_t height, int count) {
+    Point low = points.at(0), high = low;
+    for (const Point& point : points)
+        for (int axis = 0; axis < 3; ++axis) {
+            low[axis] = std::min(low[axis], point[axis]);
+            high[axis] = std::max(high[axis], point[axis]);
+        }
+    const Point centre = {(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2};
+    double square = 0;
+    for (const Point& point : points) {
+        const double x = point[0] - centre[0], z = point[2] - centre[2];
+        square = std::max(square, x * x + z * z);
+    }
+    const double radius = std::sqrt(square) / std::cos(std::numbers::pi / kCorners);
+    std::vector<Point> cylinder;
+    for (const double y : {low[1], high[1]})
+        for (int corner = 0; corner < kCorners; ++corner) {
+            const double angle = 2 * std::numbers::pi * corner / kCorners;
+            cylinder.push_back({centre[0] + radius * std::cos(angle), y, centre[2] + radius * std::sin(angle)});
+        }
+    const Camera first = frame_points(cylinder, width, height);
+    Point eye;
+    for (int axis = 0; axis < 3; ++axis)
+        eye[axis] = first.position[axis] / 16.0 - centre[axis];
+    std::vector<Camera> cameras;
+    for (int step = 0; step < count; ++step) {
+        const double angle = 2 * std::numbers::pi * step / count;
+        const double cosine = std::cos(angle), sine = std::sin(angle);
+        const auto turned = [&](const auto& v) {
+            return Point{cosine * v[0] + sine * v[2], double(v[1]), cosine * v[2] - sine * v[0]};
+        };
+        const Point from = turned(eye);
+        cameras.push_back(look_along({centre[0] + from[0], centre[1] + from[1], centre[2] + from[2]},
+                                     turned(first.look), width, height));
+    }
+    return cameras;
 }
 
 } // namespace voxrt::sim

@@ -29,4 +29,8 @@ Camera refit(const Camera& camera, const Size& made_for, const Size& size);
 /// The camera that looks along `look` and sees all points, tightly.
 Camera frame_along(const Point& look, const std::vector<Point>& points, int32_t width, int32_t height);
 
+/// `count` cameras, counterclockwise seen from above, in equal steps from that of frame_points(). Each sees all points:
+/// the first one sees the upright cylinder around them.
+std::vector<Camera> orbit(const std::vector<Point>& points, int32_t width, int32_t height, int count);
+
 } // namespace voxrt::sim
