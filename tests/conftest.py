@@ -1,11 +1,14 @@
 """What every test runs under."""
 
+import asyncio
+import inspect
 import os
 import signal
 import sysconfig
 from pathlib import Path
 
 import hypothesis
+import pytest
 
 import voxrt
 
@@ -20,3 +23,13 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 if os.environ.get("VOXRT_EXPECT_INSTALLED"):
     installed = Path(sysconfig.get_paths()["platlib"])
     assert Path(voxrt.__file__).is_relative_to(installed), f"testing {voxrt.__file__}, not the wheel in {installed}"
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_pyfunc_call(pyfuncitem):
+    """Run a test that is a coroutine to its end, within two minutes."""
+    if not inspect.iscoroutinefunction(pyfuncitem.obj):
+        return None
+    arguments = {name: pyfuncitem.funcargs[name] for name in inspect.signature(pyfuncitem.obj).parameters}
+    asyncio.run(asyncio.wait_for(pyfuncitem.obj(**arguments), 120))
+    return True

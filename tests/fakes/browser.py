@@ -24,6 +24,12 @@ _ARGUMENTS = (
     "--proxy-server=direct://",
     "--host-resolver-rules=MAP voxrt.example 127.0.0.1, MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
 )
+RESTS = "document.querySelector('#stage').getAttribute('aria-busy') === 'false'"
+"""The picture is as fine as it will be."""
+
+SCREENS = {"desktop": (1280, 800, False), "phone": (390, 844, True), "lying phone": (844, 390, True)}
+"""Width, height, and whether it is for fingers."""
+
 _OPENER = urllib.request.build_opener(urllib.request.ProxyHandler({}))
 
 
@@ -64,12 +70,21 @@ class Browser:
             }};
             look();
         """
-        return self._call("POST", f"{self._session}/execute/async", {"script": script, "args": []})
+        return self.run_async(script)
 
     def draws(self) -> None:
         """Wait until the page has drawn twice: by then it knows every event that was sent before."""
         script = "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(() => done(null)));"
-        self._call("POST", f"{self._session}/execute/async", {"script": script, "args": []})
+        self.run_async(script)
+
+    def click(self, selector: str) -> None:
+        """Click an element, wherever it is."""
+        self.run("document.querySelector(arguments[0]).click()", selector)
+
+    def enter(self, selector: str, value: object, event: str = "input") -> None:
+        """Give a field a value, as a user does."""
+        script = "const field = document.querySelector(arguments[0]); field.value = arguments[1];"
+        self.run(f"{script} field.dispatchEvent(new Event(arguments[2], {{ bubbles: true }}))", selector, value, event)
 
     def keys(self, down: list[str], seconds: float) -> None:
         """Press keys together for some seconds."""

@@ -8,6 +8,7 @@ from fakes.device import FakeDevice
 from fakes.scene_reader import ReadyScenes
 
 from voxrt.boards.board_scenes import asset_reader
+from voxrt.serve.frame_client import open_client
 from voxrt.serve.scene_library import SceneLibrary
 from voxrt.serve.server import FrameServer
 from voxrt.serve.server_options import ServerOptions
@@ -29,6 +30,14 @@ async def served(device=None, loaded=None, scenes=None, reader=None, **options):
             await server.session.renderer.load(loaded, ignore)
         yield server
     assert device.closed
+
+
+@asynccontextmanager
+async def controlled(*arguments, **options):
+    """The same with a client that has control."""
+    async with served(*arguments, **options) as server, open_client(server.url) as client:
+        await client.take_control()
+        yield server, client
 
 
 async def frame_where(client, condition):

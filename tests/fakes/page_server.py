@@ -5,9 +5,10 @@ from __future__ import annotations
 import asyncio
 import threading
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from fakes.browser import chromium
 from fakes.scene_reader import ReadyScenes
 from oracles.cuts import memory_of
 
@@ -23,6 +24,7 @@ from voxrt.voxelize import Material
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from fakes.browser import Browser
     from numpy.typing import NDArray
 
     from voxrt.board.device import Device
@@ -75,3 +77,11 @@ def serving(
         loop.call_soon_threadsafe(kept["stop"].set)
         thread.join(30)
         loop.close()
+
+
+@contextmanager
+def shown_page(scene: Scene, **options: Any) -> Iterator[tuple[Browser, FrameServer]]:
+    """A browser that shows the page of a server of its own."""
+    with chromium() as browser, serving(scene, **options) as server:
+        browser.open(server.url)
+        yield browser, server

@@ -103,8 +103,3 @@ async def until(condition) -> None:
     async with asyncio.timeout(WAIT):
         while not condition():  # noqa: ASYNC110 - it looks at another process
             await asyncio.sleep(0.02)
-
-
-def run(coroutine):
-    """Run a coroutine to its end, within a bounded time."""
-    return asyncio.run(asyncio.wait_for(coroutine, 2 * WAIT))

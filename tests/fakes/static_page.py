@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from fakes.browser import RESTS
 
 from voxrt.octree.camera import Camera, Lighting
 from voxrt.sim import render
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
     from voxrt.octree import Rom
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
-RESTS = "document.querySelector('#stage').getAttribute('aria-busy') === 'false'"
 REFUSES = "document.querySelector('#notice').dataset.kind === 'error' && !document.querySelector('#notice').hidden"
 
 
@@ -26,10 +26,23 @@ def shown(name: str, depth: int) -> str:
     return f"document.querySelector('#stage').dataset.scene === '{name} {depth}' && {RESTS}"
 
 
-def opened(browser: Browser, fragment: str = "") -> None:
-    """Open the page anew."""
+def opened(browser: Browser, fragment: str = "", name: str = "courtyard", depth: int = 7) -> None:
+    """Open the page anew, and wait until it shows a scene."""
     browser.open("about:blank")
     browser.open(browser.address + fragment)
+    assert browser.until(shown(name, depth)), notice(browser)
+
+
+def rests(browser: Browser) -> None:
+    """Wait until the picture is that of everything that was done."""
+    browser.draws()
+    assert browser.until(RESTS)
+
+
+def show(browser: Browser, *files: Path, depth: int = 7) -> None:
+    """Drop files, and wait until the page shows the first."""
+    drop(browser, *files)
+    assert browser.until(shown(files[0].stem, depth)), notice(browser)
 
 
 def drop(browser: Browser, *files: Path) -> None:
@@ -55,7 +68,7 @@ def frame_of(browser: Browser) -> tuple[dict, list[int], np.ndarray]:
         const text = window.voxrt.colours().reduce((text, byte) => text + String.fromCharCode(byte), "");
         done({ camera, size: [width, height], pixels: btoa(text) });
     """
-    got = browser._call("POST", f"{browser._session}/execute/async", {"script": script, "args": []})
+    got = browser.run_async(script)
     width, height = got["size"]
     colours = np.frombuffer(base64.b64decode(got["pixels"]), np.uint8).reshape(height, width, 3)
     return got["camera"], got["size"], colours
@@ -77,6 +90,7 @@ def saved(browser: Browser, folder: Path, button: str, name: str) -> bytes:
 
 def save_to(browser: Browser, folder: Path) -> None:
     """Let the browser save files in a folder."""
+    folder.mkdir(exist_ok=True)
     browser.cdp("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(folder), eventsEnabled=False)
 
 

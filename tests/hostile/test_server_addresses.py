@@ -9,7 +9,7 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 import pytest
-from fakes.serving import run, serving
+from fakes.serving import serving
 from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
 
@@ -42,33 +42,29 @@ async def status(url, token, origin):
         return error.response.status_code
 
 
-def test_every_printed_address_works(tmp_path):
+async def test_every_printed_address_works(tmp_path):
     (tmp_path / "token").write_text("se&sa#me%\n")
     with serving(tmp_path, "--host", "0.0.0.0", "--token-file", "token") as server:
-        assert b"se&sa" not in Path(f"/proc/{server.process.pid}/cmdline").read_bytes()
+        assert b"se&sa" not in Path(f"/proc/{server.process.pid}/cmdline").read_bytes()  # noqa: ASYNC240 - made by Linux
         assert server.url == server.urls[0]
         assert not any("0.0.0.0" in url for url in server.urls)
         for url in server.urls:
             parts = urlsplit(url)
             assert parts.fragment == "token=se%26sa%23me%25"
             assert b"<canvas" in page(url)
-            assert run(status(url, "se%26sa%23me%25", f"http://{parts.netloc}")) == 101
-
-            async def client(url=url):
-                async with open_client(url) as opened:
-                    return opened.hello["protocol"]
-
-            assert run(client()) == 2
+            assert await status(url, "se%26sa%23me%25", f"http://{parts.netloc}") == 101
+            async with open_client(url) as opened:
+                assert opened.hello["protocol"] == 2
         address = f"http://{urlsplit(server.urls[-1]).netloc}/v2"
-        assert run(status(address, "wrong", None)) == 401
-        assert run(status(address, "se%26sa%23me%25", "http://evil.example")) == 403
+        assert await status(address, "wrong", None) == 401
+        assert await status(address, "se%26sa%23me%25", "http://evil.example") == 403
         code, text = refusal_of(f"{address}?token=wrong")
         assert code == 401
         assert "the token is missing or wrong: open the address that the server printed" in text
         code, text = refusal_of(address, Host="evil.example")
         assert code == 403
         assert "pages of http://evil.example may not connect; start the server with --origin" in text
-        assert run(asyncio.to_thread(server.interrupt)) == 0
+        assert await asyncio.to_thread(server.interrupt) == 0
 
 
 @pytest.mark.parametrize(

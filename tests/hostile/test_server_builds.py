@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from fakes.blob import blob_of
 from fakes.device import never_merged, scene
-from fakes.serving import WAIT, run, serving, until
+from fakes.serving import WAIT, serving, until
 
 from voxrt.board.errors import Refused
 from voxrt.serve.frame_client import open_client
@@ -57,99 +57,84 @@ def server(tmp_path_factory):
         assert running.log == ""
 
 
-def test_cancel_ends_a_build(server):
-    async def check():
-        async with open_client(server.url) as client:
-            upload = await build_stage(client, LONG)
-            assert server.children()
-            await client._connection.send('{"type": "cancel"}')
-            with pytest.raises(Refused, match="cancelled; the scene was not changed"):
-                await upload
-            await until(lambda: not server.children() and not server.leftovers())
-            assert client.state["scene"]["name"] == "own"
-            await client.request("view", nonstop=False)
-
-    run(check())
+async def test_cancel_ends_a_build(server):
+    async with open_client(server.url) as client:
+        upload = await build_stage(client, LONG)
+        assert server.children()
+        await client._connection.send('{"type": "cancel"}')
+        with pytest.raises(Refused, match="cancelled; the scene was not changed"):
+            await upload
+        await until(lambda: not server.children() and not server.leftovers())
+        assert client.state["scene"]["name"] == "own"
+        await client.request("view", nonstop=False)
 
 
 @pytest.mark.parametrize("how", ["connection", "control"])
-def test_a_build_ends_with_its_viewer(server, how):
-    async def check():
-        async with open_client(server.url) as witness:
-            async with open_client(server.url) as client:
-                upload = await build_stage(client, LONG)
-                if how == "control":
-                    await client._connection.send('{"type": "release"}')
-                    with pytest.raises(Refused, match="took control meanwhile"):
-                        await upload
-                else:
-                    upload.cancel()
-                    client._connection.transport.abort()
-            await until(lambda: not server.children() and not server.leftovers())
-            await witness.take_control()
-            assert (await witness.upload({"new.blob": blob_of(scene("new"))}, ignore))["scene"]["name"] == "new"
-
-    run(check())
+async def test_a_build_ends_with_its_viewer(server, how):
+    async with open_client(server.url) as witness:
+        async with open_client(server.url) as client:
+            upload = await build_stage(client, LONG)
+            if how == "control":
+                await client._connection.send('{"type": "release"}')
+                with pytest.raises(Refused, match="took control meanwhile"):
+                    await upload
+            else:
+                upload.cancel()
+                client._connection.transport.abort()
+        await until(lambda: not server.children() and not server.leftovers())
+        await witness.take_control()
+        assert (await witness.upload({"new.blob": blob_of(scene("new"))}, ignore))["scene"]["name"] == "new"
 
 
 @pytest.mark.parametrize("number", [signal.SIGSEGV, signal.SIGKILL])
-def test_a_build_that_dies_is_a_line(server, number):
-    async def check():
-        async with open_client(server.url) as client:
-            upload = await build_stage(client, LONG)
-            os.kill(server.children()[0], number)
-            with pytest.raises(Refused, match=rf"the process that read the files died \({number.name}\)"):
-                await upload
-            await until(lambda: not server.children() and not server.leftovers())
-
-    run(check())
+async def test_a_build_that_dies_is_a_line(server, number):
+    async with open_client(server.url) as client:
+        upload = await build_stage(client, LONG)
+        os.kill(server.children()[0], number)
+        with pytest.raises(Refused, match=rf"the process that read the files died \({number.name}\)"):
+            await upload
+        await until(lambda: not server.children() and not server.leftovers())
 
 
-def test_a_partial_upload_ends_with_control_and_with_the_connection(server):
-    async def check():
-        async with open_client(server.url) as client:
+async def test_a_partial_upload_ends_with_control_and_with_the_connection(server):
+    async with open_client(server.url) as client:
+        await client.take_control()
+        announced = [{"name": "part.obj", "size": 1 << 27, "crc32": 0}]
+        for end in ('{"type": "release"}', '{"type": "cancel"}', None):
             await client.take_control()
-            announced = [{"name": "part.obj", "size": 1 << 27, "crc32": 0}]
-            for end in ('{"type": "release"}', '{"type": "cancel"}', None):
-                await client.take_control()
-                ready = await client.request("upload", files=announced)
-                await client._connection.send(pack_chunk(Chunk(ready["upload"], 0, bytes(CHUNK_LIMIT))))
-                assert (await client._answer(ready["request"]))["bytes"] == CHUNK_LIMIT
-                assert server.leftovers()
-                if end is not None:
-                    await client._connection.send(end)
-                    await until(lambda: not server.leftovers())
-        await until(lambda: not server.leftovers())
-
-    run(check())
+            ready = await client.request("upload", files=announced)
+            await client._connection.send(pack_chunk(Chunk(ready["upload"], 0, bytes(CHUNK_LIMIT))))
+            assert (await client._answer(ready["request"]))["bytes"] == CHUNK_LIMIT
+            assert server.leftovers()
+            if end is not None:
+                await client._connection.send(end)
+                await until(lambda: not server.leftovers())
+    await until(lambda: not server.leftovers())
 
 
-def test_files_and_names_are_limited(server):
-    async def check():
-        async with open_client(server.url) as client:
-            await client.take_control()
-            for name, size, problem in (
-                ("\u202etxt.blob", 100, "printable characters"),
-                ("a\nb.blob", 100, "printable characters"),
-                ("é" * 101, 100, "200 bytes of printable"),
-                ("../a.blob", 100, "no plain file name"),
-                ("a\\b.blob", 100, "no plain file name"),
-                ("..", 100, "no plain file name"),
-                ("a.obj", 1 << 29, "more than the limit"),
-                ("a.mem", 1 << 40, "more than the limit"),
-            ):
-                with pytest.raises(Refused, match=problem):
-                    await client.request("upload", files=[{"name": name, "size": size, "crc32": 0}])
-            pair = [{"name": name, "size": 9, "crc32": 0} for name in ("a.mem", "A.MEM")]
-            with pytest.raises(Refused, match="two files have the name"):
-                await client.request("upload", files=pair)
-            hidden = blob_of(scene("x"), name="a\u202eb\x07\n" + "c" * 5000)
-            name = (await client.upload({"x.blob": hidden}, ignore))["scene"]["name"]
-            assert name.startswith("a\\x202eb\\x07\\x0ac")
-            assert name.isprintable()
-            assert len(name) <= 1000
-
-    run(check())
+async def test_files_and_names_are_limited(server):
+    async with open_client(server.url) as client:
+        await client.take_control()
+        for name, size, problem in (
+            ("\u202etxt.blob", 100, "printable characters"),
+            ("a\nb.blob", 100, "printable characters"),
+            ("é" * 101, 100, "200 bytes of printable"),
+            ("../a.blob", 100, "no plain file name"),
+            ("a\\b.blob", 100, "no plain file name"),
+            ("..", 100, "no plain file name"),
+            ("a.obj", 1 << 29, "more than the limit"),
+            ("a.mem", 1 << 40, "more than the limit"),
+        ):
+            with pytest.raises(Refused, match=problem):
+                await client.request("upload", files=[{"name": name, "size": size, "crc32": 0}])
+        pair = [{"name": name, "size": 9, "crc32": 0} for name in ("a.mem", "A.MEM")]
+        with pytest.raises(Refused, match="two files have the name"):
+            await client.request("upload", files=pair)
+        hidden = blob_of(scene("x"), name="a\u202eb\x07\n" + "c" * 5000)
+        name = (await client.upload({"x.blob": hidden}, ignore))["scene"]["name"]
+        assert name.startswith("a\\x202eb\\x07\\x0ac")
+        assert name.isprintable()
+        assert len(name) <= 1000
 
 
 async def outcome(client, number):
@@ -159,20 +144,17 @@ async def outcome(client, number):
     return answer
 
 
-def test_a_deleted_file_is_answered(server):
-    async def check():
-        (server.temporary.parent / "gone.blob").unlink(missing_ok=True)
-        async with open_client(server.url) as client:
-            await client.take_control()
-            number = await client.send("show", scene="gone")
-            with pytest.raises(Refused, match=r"gone\.blob: cannot be read: No such file"):
-                await outcome(client, number)
-
-    run(check())
+async def test_a_deleted_file_is_answered(server):
+    (server.temporary.parent / "gone.blob").unlink(missing_ok=True)
+    async with open_client(server.url) as client:
+        await client.take_control()
+        number = await client.send("show", scene="gone")
+        with pytest.raises(Refused, match=r"gone\.blob: cannot be read: No such file"):
+            await outcome(client, number)
 
 
-def test_a_full_temporary_folder_is_answered(tmp_path):
-    async def check(server):
+async def test_a_full_temporary_folder_is_answered(tmp_path):
+    with serving(tmp_path, file_bytes=CHUNK_LIMIT) as server:
         async with open_client(server.url) as client:
             await client.take_control()
             with pytest.raises(Refused, match=r"the server cannot store the files in .*: File too large"):
@@ -180,31 +162,24 @@ def test_a_full_temporary_folder_is_answered(tmp_path):
             await client.upload({"small.blob": blob_of(scene("small"))}, ignore)
             assert server.leftovers() == []
 
-    with serving(tmp_path, file_bytes=CHUNK_LIMIT) as server:
-        run(check(server))
 
-
-def test_the_scene_of_death_is_refused(server):
+async def test_the_scene_of_death_is_refused(server):
     """A scene whose every frame takes minutes: it is refused, frames of the present one go on."""
-
-    async def check():
-        death = {"death.blob": blob_of(never_merged(16))}
-        async with open_client(server.url) as witness, open_client(server.url) as client:
-            await client.take_control()
-            await client.request("view", nonstop=True)
-            with pytest.raises(Refused, match="too slow to show"):
-                await client.upload(death, ignore)
-            numbers = [(await witness.next_frame()).scene for _ in range(5)]
-            assert len(set(numbers)) == 1
-            assert witness.state["scene"]["number"] == numbers[0]
-            assert witness.state["scene"]["name"] != "endless"
-
-    run(check())
+    death = {"death.blob": blob_of(never_merged(16))}
+    async with open_client(server.url) as witness, open_client(server.url) as client:
+        await client.take_control()
+        await client.request("view", nonstop=True)
+        with pytest.raises(Refused, match="too slow to show"):
+            await client.upload(death, ignore)
+        numbers = [(await witness.next_frame()).scene for _ in range(5)]
+        assert len(set(numbers)) == 1
+        assert witness.state["scene"]["number"] == numbers[0]
+        assert witness.state["scene"]["name"] != "endless"
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
-def test_the_end_of_the_server_ends_builds(tmp_path, number):
-    async def check(server):
+async def test_the_end_of_the_server_ends_builds(tmp_path, number):
+    with serving(tmp_path, "--depth", 13) as server:
         async with open_client(server.url) as client:
             upload = await build_stage(client, LONG)
             children = server.children()
@@ -216,9 +191,6 @@ def test_the_end_of_the_server_ends_builds(tmp_path, number):
             await until(lambda: not any(_runs(pid) for pid in children))
         if number != signal.SIGKILL:
             assert server.leftovers() == []
-
-    with serving(tmp_path, "--depth", 13) as server:
-        run(check(server))
 
 
 def _runs(pid):

@@ -8,7 +8,7 @@ from contextlib import suppress
 import pytest
 from fakes.blob import blob_of
 from fakes.device import never_merged, scene
-from fakes.serving import run, serving
+from fakes.serving import serving
 
 from voxrt.board.errors import Refused
 from voxrt.serve.frame_client import open_client
@@ -16,34 +16,32 @@ from voxrt.sim import SimulatorError
 from voxrt.sim.verilated import import_verilated
 
 
-def test_in_a_long_frame_of_the_simulated_device(tmp_path):
+async def test_in_a_long_frame_of_the_simulated_device(tmp_path):
     try:
         import_verilated("")
     except SimulatorError as error:
         pytest.skip(str(error))
 
-    async def check(server):
+    (tmp_path / "own.blob").write_bytes(blob_of(scene("own", blocks=2)))
+    with serving(tmp_path, "own.blob", "--device", "sim", "--config", "tiny") as server:
         async with open_client(server.url) as client:
             await client.take_control()
             await client.next_frame()
             await client.request("view", size=[2048, 2048], nonstop=True)
             await client.request("counters")
             assert await asyncio.to_thread(server.interrupt) == 0
-
-    (tmp_path / "own.blob").write_bytes(blob_of(scene("own", blocks=2)))
-    with serving(tmp_path, "own.blob", "--device", "sim", "--config", "tiny") as server:
-        run(check(server))
         assert server.leftovers() == []
 
 
-def test_in_the_first_frame_of_a_scene(tmp_path):
-    async def check(server):
-        rendering = asyncio.Event()
+async def test_in_the_first_frame_of_a_scene(tmp_path):
+    rendering = asyncio.Event()
 
-        def progress(stage, _done, _total):
-            if stage == "render":
-                rendering.set()
+    def progress(stage, _done, _total):
+        if stage == "render":
+            rendering.set()
 
+    (tmp_path / "own.blob").write_bytes(blob_of(scene("own", blocks=2)))
+    with serving(tmp_path, "own.blob") as server:
         async with open_client(server.url) as client:
             await client.take_control()
             await client.request("view", size=[4000, 4000])  # its frames may take half a minute
@@ -52,8 +50,4 @@ def test_in_the_first_frame_of_a_scene(tmp_path):
             assert await asyncio.to_thread(server.interrupt) == 0
             with suppress(Refused):
                 await upload
-
-    (tmp_path / "own.blob").write_bytes(blob_of(scene("own", blocks=2)))
-    with serving(tmp_path, "own.blob") as server:
-        run(check(server))
         assert server.leftovers() == []

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 from fakes import floods
 from fakes.device import FakeDevice, scene
-from fakes.serving import run, serving, until
+from fakes.serving import serving, until
 from fakes.sockets import ended, raw_connection
 
 from voxrt.boards.board_scenes import asset_reader
@@ -51,124 +51,107 @@ async def frames_of(client, count):
         await client.next_frame()
 
 
-def test_a_viewer_that_stops_reading_is_dropped():
+async def test_a_viewer_that_stops_reading_is_dropped():
     """Its frames are larger than all buffers on the way. The polite viewer gets its frames meanwhile."""
-
-    async def check():
-        device = FakeDevice(size=(1024, 1024))
-        limits = Limits(send_seconds=0.5, send_bytes_per_second=1 << 30)
-        async with served(device, limits) as server, open_client(server.url) as polite:
-            await polite.take_control()
-            await polite.request("view", nonstop=True, size=[1024, 1024])
-            async with stalled(server.port), stalled(server.port):
-                await until(lambda: len(server.session.clients) == 3)
-                while len(server.session.clients) > 1:
-                    await polite.next_frame()
-
-    run(check())
+    device = FakeDevice(size=(1024, 1024))
+    limits = Limits(send_seconds=0.5, send_bytes_per_second=1 << 30)
+    async with served(device, limits) as server, open_client(server.url) as polite:
+        await polite.take_control()
+        await polite.request("view", nonstop=True, size=[1024, 1024])
+        async with stalled(server.port), stalled(server.port):
+            await until(lambda: len(server.session.clients) == 3)
+            while len(server.session.clients) > 1:
+                await polite.next_frame()
 
 
-def test_the_frames_that_are_kept_for_slow_viewers_are_limited():
-    async def check():
-        device = FakeDevice(size=(1024, 1024))
-        frame = 1024 * 1024 * 3 + FRAME_HEADER
-        async with served(device, Limits(frame_bytes=3 * frame)) as server, open_client(server.url) as polite:
-            await polite.take_control()
-            await polite.request("view", nonstop=True, size=[1024, 1024])
-            async with contextlib.AsyncExitStack() as stack:
-                for _ in range(6):  # each stops in a frame of its own
-                    await stack.enter_async_context(stalled(server.port))
-                    await frames_of(polite, 5)
-                clients = server.session.clients._clients.values()
-                kept = {id(data): len(data) for client in clients for data in client.frames}
-                assert sum(kept.values()) <= 4 * frame
-                assert len(clients) < 7
+async def test_the_frames_that_are_kept_for_slow_viewers_are_limited():
+    device = FakeDevice(size=(1024, 1024))
+    frame = 1024 * 1024 * 3 + FRAME_HEADER
+    async with served(device, Limits(frame_bytes=3 * frame)) as server, open_client(server.url) as polite:
+        await polite.take_control()
+        await polite.request("view", nonstop=True, size=[1024, 1024])
+        async with contextlib.AsyncExitStack() as stack:
+            for _ in range(6):  # each stops in a frame of its own
+                await stack.enter_async_context(stalled(server.port))
                 await frames_of(polite, 5)
-
-    run(check())
+            clients = server.session.clients._clients.values()
+            kept = {id(data): len(data) for client in clients for data in client.frames}
+            assert sum(kept.values()) <= 4 * frame
+            assert len(clients) < 7
+            await frames_of(polite, 5)
 
 
 @pytest.mark.parametrize("data", [floods.PING, floods.FRAGMENT], ids=["pings", "fragments"])
-def test_a_viewer_that_is_flooded_by_its_own_answers_is_dropped(data):
+async def test_a_viewer_that_is_flooded_by_its_own_answers_is_dropped(data):
     """It sends pings, and reads none of the pongs; or a message of endless empty fragments."""
+    limits = Limits(frames_per_second=1e6, send_seconds=1e6)
+    async with served(FakeDevice(), limits) as server:
+        async with stalled(server.port) as connection:
+            await until(lambda: len(server.session.clients) == 1)
 
-    async def check():
-        limits = Limits(frames_per_second=1e6, send_seconds=1e6)
-        async with served(FakeDevice(), limits) as server:
-            async with stalled(server.port) as connection:
-                await until(lambda: len(server.session.clients) == 1)
+            def flood():
+                connection.sendall(floods.BEGIN if data is floods.FRAGMENT else b"")
+                while True:
+                    connection.sendall((b"\x89\xfd" + bytes(4 + 125)) * 500 if data is floods.PING else data * 500)
 
-                def flood():
-                    connection.sendall(floods.BEGIN if data is floods.FRAGMENT else b"")
-                    while True:
-                        connection.sendall((b"\x89\xfd" + bytes(4 + 125)) * 500 if data is floods.PING else data * 500)
-
-                with pytest.raises(OSError, match=r"reset|[Bb]roken"):
-                    await asyncio.to_thread(flood)
-            await until(lambda: len(server.session.clients) == 0)
-
-    run(check())
+            with pytest.raises(OSError, match=r"reset|[Bb]roken"):
+                await asyncio.to_thread(flood)
+        await until(lambda: len(server.session.clients) == 0)
 
 
-def test_connections_without_a_token_are_limited_per_address():
-    async def check():
-        limits = Limits(strangers_per_address=5, handshake_seconds=60, new_connections_per_address_and_second=1000)
-        async with served(FakeDevice(), limits, token="sesame") as server, open_client(server.url) as polite:  # noqa: SIM117 - ten connections beside the viewer
-            async with contextlib.AsyncExitStack() as stack:
-                first = [await stack.enter_async_context(raw_connection(server.port)) for _ in range(5)]
-                await until(lambda: server.connections == 6)
-                for _ in range(10):
-                    reader, _ = await stack.enter_async_context(raw_connection(server.port))
-                    assert await ended(reader)
-                assert server.connections == 6
-                await polite.request("counters")
-                first[0][1].close()
-                await until(lambda: server.connections == 5)
-                async with open_client(server.url) as second:
-                    await second.request("counters")
-        async with served(FakeDevice(), Limits(new_connections_per_address_and_second=1)) as server:
-            closed = 0
+async def test_connections_without_a_token_are_limited_per_address():
+    limits = Limits(strangers_per_address=5, handshake_seconds=60, new_connections_per_address_and_second=1000)
+    async with served(FakeDevice(), limits, token="sesame") as server, open_client(server.url) as polite:  # noqa: SIM117 - ten connections beside the viewer
+        async with contextlib.AsyncExitStack() as stack:
+            first = [await stack.enter_async_context(raw_connection(server.port)) for _ in range(5)]
+            await until(lambda: server.connections == 6)
             for _ in range(10):
-                async with raw_connection(server.port) as (reader, writer):
-                    writer.write(b"GET / HTTP/1.1\r\nHost: x\r\n\r\n")
-                    closed += await ended(reader)
-            assert closed >= 5
+                reader, _ = await stack.enter_async_context(raw_connection(server.port))
+                assert await ended(reader)
+            assert server.connections == 6
+            await polite.request("counters")
+            first[0][1].close()
+            await until(lambda: server.connections == 5)
+            async with open_client(server.url) as second:
+                await second.request("counters")
+    async with served(FakeDevice(), Limits(new_connections_per_address_and_second=1)) as server:
+        closed = 0
+        for _ in range(10):
+            async with raw_connection(server.port) as (reader, writer):
+                writer.write(b"GET / HTTP/1.1\r\nHost: x\r\n\r\n")
+                closed += await ended(reader)
+        assert closed >= 5
 
-    run(check())
 
-
-def test_the_legacy_port_is_off_unless_asked_for_and_bounded():
-    async def check():
-        async with served(FakeDevice()) as server:
-            assert server.legacy_port is None
-        device = FakeDevice(size=(640, 512))
-        async with (
-            served(device, legacy_port=0) as server,
-            open_client(server.url) as polite,
-            contextlib.AsyncExitStack() as stack,
-        ):
-            await polite.take_control()
-            await polite.request("view", nonstop=True)
-            clients = [await stack.enter_async_context(raw_connection(server.legacy_port)) for _ in range(12)]
-            for _, writer in clients:
-                writer.write(LEGACY_REQUEST * 100)
-            for _ in range(20):
-                before = device.frames
-                await polite.next_frame()
-                assert device.frames - before < 10  # its frames and those of the others take turns
-            assert sum([await ended(reader) for reader, _ in clients[4:]]) == 8
-
-    run(check())
+async def test_the_legacy_port_is_off_unless_asked_for_and_bounded():
+    async with served(FakeDevice()) as server:
+        assert server.legacy_port is None
+    device = FakeDevice(size=(640, 512))
+    async with (
+        served(device, legacy_port=0) as server,
+        open_client(server.url) as polite,
+        contextlib.AsyncExitStack() as stack,
+    ):
+        await polite.take_control()
+        await polite.request("view", nonstop=True)
+        clients = [await stack.enter_async_context(raw_connection(server.legacy_port)) for _ in range(12)]
+        for _, writer in clients:
+            writer.write(LEGACY_REQUEST * 100)
+        for _ in range(20):
+            before = device.frames
+            await polite.next_frame()
+            assert device.frames - before < 10  # its frames and those of the others take turns
+        assert sum([await ended(reader) for reader, _ in clients[4:]]) == 8
 
 
 def flood(port):
     return subprocess.Popen([sys.executable, floods.__file__, str(port)], stdin=subprocess.PIPE)
 
 
-def test_ten_floods_leave_a_viewer_its_frames(tmp_path):
+async def test_ten_floods_leave_a_viewer_its_frames(tmp_path):
     """The polite viewer goes on, memory stays, nothing is logged, and Ctrl-C ends the server in their midst."""
 
-    async def check(server):
+    with serving(tmp_path, EXAMPLES / "house.obj", "--depth", 5) as server:
         async with open_client(server.url) as polite:
             await polite.take_control()
             await polite.request("view", nonstop=True, size=[320, 240])
@@ -186,34 +169,24 @@ def test_ten_floods_leave_a_viewer_its_frames(tmp_path):
                 flooding.wait()
         assert server.log == ""
 
+
+async def test_shutdown_with_viewers_that_read_nothing(tmp_path):
     with serving(tmp_path, EXAMPLES / "house.obj", "--depth", 5) as server:
-        run(check(server))
-
-
-def test_shutdown_with_viewers_that_read_nothing(tmp_path):
-    async def check(server):
         async with open_client(server.url) as polite, stalled(server.port), stalled(server.port):
             await polite.take_control()
             await polite.request("view", nonstop=True, size=[1600, 1200])
             await frames_of(polite, 5)
             assert await asyncio.to_thread(server.interrupt) == 0
 
-    with serving(tmp_path, EXAMPLES / "house.obj", "--depth", 5) as server:
-        run(check(server))
 
-
-def test_a_viewer_that_vanishes_in_its_own_flood_is_not_logged(caplog):
+async def test_a_viewer_that_vanishes_in_its_own_flood_is_not_logged(caplog):
     """The pongs to a piece of its pings are written when the connection is lost already."""
-
-    async def check():
-        limits = Limits(frames_per_second=1e6, new_clients_per_second=1000)
-        async with served(FakeDevice(), limits) as server:
-            for _ in range(20):
-                connection = await asyncio.to_thread(floods.viewer, server.port)
-                connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
-                connection.sendall(floods.PING * 20_000)
-                connection.close()  # by a reset
-            await until(lambda: server.connections == 0)
-
-    run(check())
+    limits = Limits(frames_per_second=1e6, new_clients_per_second=1000)
+    async with served(FakeDevice(), limits) as server:
+        for _ in range(20):
+            connection = await asyncio.to_thread(floods.viewer, server.port)
+            connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+            connection.sendall(floods.PING * 20_000)
+            connection.close()  # by a reset
+        await until(lambda: server.connections == 0)
     assert not caplog.records

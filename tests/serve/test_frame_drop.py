@@ -8,7 +8,7 @@ from threading import Timer
 import numpy as np
 import pytest
 from fakes.device import FakeDevice, never_merged, opened_or_skipped, scene
-from fakes.frame_server import CAMERA, frame_where, ignore, served
+from fakes.frame_server import CAMERA, controlled, frame_where, ignore
 from oracles import worlds
 from oracles.cuts import memory_of
 
@@ -19,7 +19,6 @@ from voxrt.board.simulated.core import open_rtl
 from voxrt.board.simulated.model import ModelDevice
 from voxrt.board.view import View, frame_world
 from voxrt.serve import renderer
-from voxrt.serve.frame_client import open_client
 
 
 class Hanging(FakeDevice):
@@ -37,52 +36,42 @@ def camera(x):
     return {**CAMERA, "position": [x, 0, 0]}
 
 
-def test_a_long_frame_is_dropped_and_the_next_one_is_not(run, monkeypatch):
+async def test_a_long_frame_is_dropped_and_the_next_one_is_not(monkeypatch):
     monkeypatch.setattr(renderer, "_OUTDATED_SECONDS", 0.0)
-
-    async def check():
-        device = Hanging(pixel_seconds=1.0)
-        async with served(device, scene()) as server, open_client(server.url) as client:
-            await client.take_control()
-            await client.next_frame()
-            device.hangs = True
-            await client.request("view", camera=camera(1))
-            while not device.busy.locked():
-                await client.request("counters")
-            second = await client.send("view", camera=camera(2))
-            while device.dropped == 0 or not device.busy.locked():
-                await client.request("counters")
-            # The second frame has begun. It stays, although the view changes again and again.
-            for x in range(3, 6):
-                last = await client.send("view", camera=camera(x))
-            before = server.session.renderer.frames
-            for _ in range(20):
-                await client.request("counters")
-            assert (device.dropped, server.session.renderer.frames) == (1, before)
-            device.hangs = False
-            device.may_finish.set()
-            packet = await frame_where(client, lambda packet: packet.request >= second)
-            assert packet.request == second
-            await frame_where(client, lambda packet: packet.request == last)
-            assert device.dropped == 1
-            assert server.session.renderer.trouble is None
-
-    run(check())
+    device = Hanging(pixel_seconds=1.0)
+    async with controlled(device, scene()) as (server, client):
+        await client.next_frame()
+        device.hangs = True
+        await client.request("view", camera=camera(1))
+        while not device.busy.locked():
+            await client.request("counters")
+        second = await client.send("view", camera=camera(2))
+        while device.dropped == 0 or not device.busy.locked():
+            await client.request("counters")
+        # The second frame has begun. It stays, although the view changes again and again.
+        for x in range(3, 6):
+            last = await client.send("view", camera=camera(x))
+        before = server.session.renderer.frames
+        for _ in range(20):
+            await client.request("counters")
+        assert (device.dropped, server.session.renderer.frames) == (1, before)
+        device.hangs = False
+        device.may_finish.set()
+        packet = await frame_where(client, lambda packet: packet.request >= second)
+        assert packet.request == second
+        await frame_where(client, lambda packet: packet.request == last)
+        assert device.dropped == 1
+        assert server.session.renderer.trouble is None
 
 
-def test_a_quick_frame_is_not_dropped(run, monkeypatch):
+async def test_a_quick_frame_is_not_dropped(monkeypatch):
     monkeypatch.setattr(renderer, "_OUTDATED_SECONDS", 60.0)
-
-    async def check():
-        device = FakeDevice()
-        async with served(device, scene()) as server, open_client(server.url) as client:
-            await client.take_control()
-            for x in range(50):
-                request = await client.send("view", camera=camera(x))
-            await frame_where(client, lambda packet: packet.request == request)
-            assert device.dropped == 0
-
-    run(check())
+    device = FakeDevice()
+    async with controlled(device, scene()) as (_, client):
+        for x in range(50):
+            request = await client.send("view", camera=camera(x))
+        await frame_where(client, lambda packet: packet.request == request)
+        assert device.dropped == 0
 
 
 @pytest.mark.parametrize("opened", [ModelDevice, lambda: open_rtl("tiny")])

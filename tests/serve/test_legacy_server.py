@@ -42,36 +42,31 @@ def test_request(position, look, right, up, background):
     assert read_legacy_request(request, 6)[0].position == position
 
 
-def test_pictures(run):
-    async def check():
-        device = FakeDevice(size=(640, 512))
-        library, options = SceneLibrary(asset_reader()), ServerOptions(legacy_port=0)
-        async with FrameServer(device, library, options) as server:
-            await server.session.renderer.load(scene(material=9), lambda *_: None)
-            before = server.session.renderer.view
-            async with raw_connection(server.legacy_port) as (reader, writer):
-                for x in (3, 200):
-                    request = spell((512 * x, 0, 0), (0, 0, 90), (1, 0, 0), (0, 1, 0), (1, 2, 3))
-                    writer.write(request[:5])
-                    await writer.drain()
-                    writer.write(request[5:])
-                    picture = await reader.readexactly(512 * 512 * 3)
-                    assert picture[:2] == bytes((9, (((512 * x + 2048) % 4096 - 2048) * 32 // 1024) & 0xFF))
-                    assert len({picture[i : i + 3] for i in range(0, len(picture), 3)}) == 1
-                assert server.session.renderer.view == before
-                # An incomplete request, a failing device, too many clients: the server closes each connection.
-                device.fail_frames = DeviceError("the lanes hang")
-                async with raw_connection(server.legacy_port) as (other_reader, other):
-                    other.write(b"\0" * 27)
-                    other.write_eof()
-                    assert await ended(other_reader)
-                async with raw_connection(server.legacy_port) as (other_reader, other):
-                    other.write(b"\0" * 28)
-                    assert await ended(other_reader)
-                async with contextlib.AsyncExitStack() as stack:
-                    readers = [
-                        (await stack.enter_async_context(raw_connection(server.legacy_port)))[0] for _ in range(4)
-                    ]
-                    assert await ended(readers[-1])
-
-    run(check())
+async def test_pictures():
+    device = FakeDevice(size=(640, 512))
+    library, options = SceneLibrary(asset_reader()), ServerOptions(legacy_port=0)
+    async with FrameServer(device, library, options) as server:
+        await server.session.renderer.load(scene(material=9), lambda *_: None)
+        before = server.session.renderer.view
+        async with raw_connection(server.legacy_port) as (reader, writer):
+            for x in (3, 200):
+                request = spell((512 * x, 0, 0), (0, 0, 90), (1, 0, 0), (0, 1, 0), (1, 2, 3))
+                writer.write(request[:5])
+                await writer.drain()
+                writer.write(request[5:])
+                picture = await reader.readexactly(512 * 512 * 3)
+                assert picture[:2] == bytes((9, (((512 * x + 2048) % 4096 - 2048) * 32 // 1024) & 0xFF))
+                assert len({picture[i : i + 3] for i in range(0, len(picture), 3)}) == 1
+            assert server.session.renderer.view == before
+            # An incomplete request, a failing device, too many clients: the server closes each connection.
+            device.fail_frames = DeviceError("the lanes hang")
+            async with raw_connection(server.legacy_port) as (other_reader, other):
+                other.write(b"\0" * 27)
+                other.write_eof()
+                assert await ended(other_reader)
+            async with raw_connection(server.legacy_port) as (other_reader, other):
+                other.write(b"\0" * 28)
+                assert await ended(other_reader)
+            async with contextlib.AsyncExitStack() as stack:
+                readers = [(await stack.enter_async_context(raw_connection(server.legacy_port)))[0] for _ in range(4)]
+                assert await ended(readers[-1])

@@ -8,8 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fakes.browser import chromium
-from fakes.page_server import rom_of, scene_of, serving
+from fakes.browser import RESTS, chromium
+from fakes.page_server import rom_of, scene_of, serving, shown_page
 from oracles import worlds
 
 from voxrt.board.simulated.core import open_rtl
@@ -22,7 +22,6 @@ const canvas = document.querySelector("#picture");
 const data = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
 return [canvas.width, canvas.height, Array.from(data.filter((_, i) => i % 4 < 3))];
 """
-RESTS = "document.querySelector('#stage').getAttribute('aria-busy') === 'false'"
 CUBE = "".join(f"v {i & 1} {i >> 1 & 1} {i >> 2}\n" for i in range(8)) + "".join(
     f"f {face}\n" for face in ("1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6")
 )
@@ -59,8 +58,7 @@ def shows_the_view(server, browser):
 
 
 def test_page(tmp_path):
-    with chromium() as browser, serving(scene_of("first", worlds.boxes(4, 9, 3), 4)) as server:
-        browser.open(server.url)
+    with shown_page(scene_of("first", worlds.boxes(4, 9, 3), 4)) as (browser, server):
         assert browser.until("document.querySelector('#scene').innerText === 'first'")
         assert shows_the_view(server, browser)
         stage = browser.run("const s = document.querySelector('#stage'); return [s.clientWidth, s.clientHeight]")
@@ -97,16 +95,14 @@ def test_page(tmp_path):
         (tmp_path / "cube.obj").write_text("f 1 2 3\n")
         browser.give_files("#files", [str(tmp_path / "cube.obj")])
         assert browser.until("document.querySelector('#notice').innerText.includes('was not loaded')")
-        browser.run("document.querySelector('#close').click()")
+        browser.click("#close")
 
         # Controls of the panel: a scene, shading, background, flip, a view.
-        browser.run("document.querySelector('#panel [data-scene=first]').click()")
+        browser.click("#panel [data-scene=first]")
         assert browser.until("document.querySelector('#scene').innerText === 'first'")
         for selector in ("[data-shading=flat]", "#flip-x", "#presets button:nth-child(2)"):
-            browser.run("document.querySelector(arguments[0]).click()", selector)
-        browser.run(
-            "const c = document.querySelector('#background'); c.value = '#204060'; c.dispatchEvent(new Event('input'))"
-        )
+            browser.click(selector)
+        browser.enter("#background", "#204060")
         assert browser.until("document.querySelector('[data-shading=flat]').ariaPressed === 'true'")
         assert shows_the_view(server, browser)
         view = server.session.renderer.view
@@ -117,26 +113,20 @@ def test_page(tmp_path):
 
 
 def test_light():
-    with chromium() as browser, serving(scene_of("ball", worlds.ball(4), 4)) as server:
-        browser.open(server.url)
+    with shown_page(scene_of("ball", worlds.ball(4), 4)) as (browser, server):
         assert browser.until(RESTS)
         assert browser.run("return document.querySelector('[data-shading=faces]').ariaPressed") == "true"
         for shading in ("report", "faces"):
-            browser.run("document.querySelector(arguments[0]).click()", f"[data-shading={shading}]")
+            browser.click(f"[data-shading={shading}]")
             assert browser.until(
                 f"document.querySelector('[data-shading={shading}]').ariaPressed === 'true' && {RESTS}"
             )
             assert server.session.renderer.view.lighting.shading == shading
         assert browser.run("return document.querySelector('#light').hidden")
-        browser.run("document.querySelector('[data-feature=light]').click()")
+        browser.click("[data-feature=light]")
         assert browser.until("!document.querySelector('#light').hidden")
-        set_slider = """
-            const slider = document.querySelector(`#light [aria-label=${arguments[0]}]`);
-            slider.value = arguments[1];
-            slider.dispatchEvent(new Event("input"));
-        """
         for name, value in (("Direction", 90), ("Height", 0), ("Ambient", 200)):
-            browser.run(set_slider, name, value)
+            browser.enter(f"#light [aria-label={name}]", value)
         assert browser.until(f"document.querySelector('#light [aria-label=Ambient]').value === '200' && {RESTS}")
         lighting = server.session.renderer.view.lighting
         assert lighting.on
@@ -153,8 +143,7 @@ def test_an_animation_plays_and_stops_at_a_frame():
     assert len(walk.roots) == 3
     seen = "window.seen = new Set(); new MutationObserver(() => window.seen.add(document.querySelector('#frame-number')"
     seen += ".textContent)).observe(document.querySelector('#frame-number'), { childList: true, characterData: true })"
-    with chromium() as browser, serving(walk) as server:
-        browser.open(server.url)
+    with shown_page(walk) as (browser, server):
         assert browser.until("document.querySelector('#play').textContent === 'Pause'")
         browser.run(seen)
         for number in (1, 2, 3):
@@ -162,11 +151,7 @@ def test_an_animation_plays_and_stops_at_a_frame():
         browser.mouse([browser.middle("#play")])
         assert browser.until(f"document.querySelector('#play').ariaPressed === 'false' && {RESTS}")
         for frame in (2, 0, 1):
-            browser.run(
-                "const slider = document.querySelector('#frames'); slider.value = arguments[0];"
-                "slider.dispatchEvent(new Event('input'))",
-                frame,
-            )
+            browser.enter("#frames", frame)
             assert browser.until(f"document.querySelector('#frame-number').textContent === '{frame + 1} / 3'")
             browser.draws()
             assert shows_the_view(server, browser)
@@ -179,8 +164,7 @@ def test_an_animation_plays_and_stops_at_a_frame():
 
 def test_an_empty_server_shows_where_to_drop_and_what_to_open(tmp_path):
     (tmp_path / "cube.obj").write_text(CUBE)
-    with chromium() as browser, serving(scene_of("first", worlds.boxes(4, 9, 3), 4), shown=False) as server:
-        browser.open(server.url)
+    with shown_page(scene_of("first", worlds.boxes(4, 9, 3), 4), shown=False) as (browser, server):
         assert browser.until("document.querySelector('#empty').checkVisibility()")
         assert browser.run("return document.querySelector('#empty').innerText").startswith("Drop a scene here")
         assert not browser.run("return document.querySelector('#tools').checkVisibility({visibilityProperty: true})")
@@ -189,8 +173,7 @@ def test_an_empty_server_shows_where_to_drop_and_what_to_open(tmp_path):
         assert browser.until("document.querySelector('#scene').innerText === 'cube'")
         assert browser.run("return document.querySelector('#empty').hidden && document.querySelector('#drop').hidden")
         assert shows_the_view(server, browser)
-    with chromium() as browser, serving(scene_of("first", worlds.boxes(4, 9, 3), 4), shown=False) as server:
-        browser.open(server.url)
+    with shown_page(scene_of("first", worlds.boxes(4, 9, 3), 4), shown=False) as (browser, server):
         assert browser.until("!document.querySelector('#empty [data-scene=first]').disabled")
         x, y = browser.middle("#empty [data-scene=first]")
         browser.mouse([(x, y)])
@@ -217,8 +200,7 @@ class EndlessReader:
 def test_an_upload_shows_its_progress_and_can_be_cancelled(tmp_path):
     (tmp_path / "cube.obj").write_text(CUBE)
     reader = EndlessReader()
-    with chromium() as browser, serving(scene_of("first", worlds.ball(4), 4), reader=reader) as server:
-        browser.open(server.url)
+    with shown_page(scene_of("first", worlds.ball(4), 4), reader=reader) as (browser, server):
         assert browser.until(RESTS)
         for _ in range(2):  # the server accepts another upload afterwards
             browser.give_files("#files", [str(tmp_path / "cube.obj")])
@@ -234,8 +216,7 @@ def test_an_upload_shows_its_progress_and_can_be_cancelled(tmp_path):
 
 def test_a_slow_device_shows_coarse_pictures_first():
     scene = scene_of("first", worlds.boxes(4, 9, 3), 4)
-    with chromium() as browser, serving(scene, device=open_rtl("lit")) as server:
-        browser.open(server.url)
+    with shown_page(scene, device=open_rtl("lit")) as (browser, _):
         assert browser.until("document.querySelector('#rendering').innerText.startsWith('rendering, about')", 60)
         width, stage = browser.run(
             "return [document.querySelector('#picture').width, document.querySelector('#stage').clientWidth]"
@@ -283,8 +264,7 @@ def test_a_wrong_token_and_a_wrong_origin_are_told_apart():
 
 
 def test_a_second_viewer_follows_and_takes_control():
-    with chromium() as browser, serving(scene_of("first", worlds.ball(4), 4)) as server:
-        browser.open(server.url)
+    with shown_page(scene_of("first", worlds.ball(4), 4)) as (browser, server):
         assert browser.until(RESTS)
         before = server.session.renderer.view
         with chromium((700, 500)) as other:

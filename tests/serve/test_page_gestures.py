@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fakes.browser import chromium
-from fakes.page_server import scene_of, serving
+from fakes.browser import RESTS, SCREENS, chromium
+from fakes.page_server import scene_of, serving, shown_page
 from oracles import worlds
 
 from voxrt.octree import Octree
 from voxrt.sim import cast_rays, pixel_directions
 
 DEPTH = 4
-RESTS = "document.querySelector('#stage').getAttribute('aria-busy') === 'false'"
-SCREENS = {"desktop": (1280, 800, False), "phone": (390, 844, True), "lying phone": (844, 390, True)}
 SHIFT = 8
 
 
@@ -165,8 +163,7 @@ def test_f_frames_the_scene(page):
 
 
 def test_keys_fly_and_orbit():
-    with chromium() as browser, serving(scene_of("ball", worlds.ball(DEPTH), DEPTH)) as server:
-        browser.open(server.url)
+    with shown_page(scene_of("ball", worlds.ball(DEPTH), DEPTH)) as (browser, server):
         assert browser.until(RESTS)
         page = Page(browser, server)
         browser.run("document.querySelector('#picture').focus()")
@@ -203,8 +200,7 @@ def test_keys_fly_and_orbit():
 
 
 def test_fullscreen():
-    with chromium() as browser, serving(scene_of("ball", worlds.ball(DEPTH), DEPTH)) as server:
-        browser.open(server.url)
+    with shown_page(scene_of("ball", worlds.ball(DEPTH), DEPTH)) as (browser, _):
         assert browser.until(RESTS)
         browser.mouse([browser.middle("#fullscreen")])
         assert browser.until("document.fullscreenElement === document.querySelector('#stage')")

@@ -5,12 +5,10 @@ from __future__ import annotations
 from itertools import pairwise
 
 import pytest
-from fakes.browser import chromium
+from fakes.browser import RESTS, SCREENS, chromium
 from fakes.page_server import scene_of, serving
 from oracles import worlds
 
-RESTS = "document.querySelector('#stage').getAttribute('aria-busy') === 'false'"
-SCREENS = {"desktop": (1280, 800, False), "phone": (390, 844, True), "lying phone": (844, 390, True)}
 OPEN_ALL = """
 document.querySelector("#advanced").open = true;
 document.querySelector("[data-feature=light]").click();

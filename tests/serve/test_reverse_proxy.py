@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 from fakes.blob import blob_of
 from fakes.device import scene
-from fakes.serving import run, serving
+from fakes.serving import serving
 from fakes.sockets import free_port
 from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
@@ -66,29 +66,12 @@ def proxied(folder, port, behind):
             process.terminate()
 
 
-def test_the_configuration_of_the_manual(tmp_path, monkeypatch):
+async def test_the_configuration_of_the_manual(tmp_path, monkeypatch):
     port = free_port()
     origin = f"https://localhost:{port}"
     (tmp_path / "token").write_text("sesame\n")
     (tmp_path / "proxy").mkdir()
     (tmp_path / "own.blob").write_bytes(blob_of(scene("own")))
-
-    async def check():
-        async with open_client(f"{origin}/#token=sesame") as client:
-            await client.next_frame()
-            await client.take_control()
-            await client.upload({"new.blob": blob_of(scene("new", blocks=2))}, lambda *_: None)
-            assert (await client.next_frame()).frame.colour.shape == (480, 640, 3)
-        address = f"wss://localhost:{port}/v2"
-        async with connect(f"{address}?token=sesame", origin=origin, proxy=None):
-            pass
-        for target, sender, status in (("", origin, 401), ("?token=sesame", "https://evil.example", 403)):
-            with pytest.raises(InvalidStatus, match=str(status)):
-                await connect(f"{address}{target}", origin=sender, proxy=None)
-        with pytest.raises(Refused, match="the token is missing or wrong"):
-            async with open_client(f"{origin}/#token=other"):
-                pass
-
     with (
         serving(tmp_path, "own.blob", "--token-file", "token", "--origin", origin) as server,
         proxied(tmp_path, port, server.port),
@@ -103,5 +86,18 @@ def test_the_configuration_of_the_manual(tmp_path, monkeypatch):
             opener.open(f"{origin}/v2", timeout=60)
         with refused.value as answer:
             assert b"the token is missing or wrong" in answer.read()
-        run(check())
-        assert asyncio.run(asyncio.to_thread(server.interrupt)) == 0
+        async with open_client(f"{origin}/#token=sesame") as client:
+            await client.next_frame()
+            await client.take_control()
+            await client.upload({"new.blob": blob_of(scene("new", blocks=2))}, lambda *_: None)
+            assert (await client.next_frame()).frame.colour.shape == (480, 640, 3)
+        address = f"wss://localhost:{port}/v2"
+        async with connect(f"{address}?token=sesame", origin=origin, proxy=None):
+            pass
+        for target, sender, status in (("", origin, 401), ("?token=sesame", "https://evil.example", 403)):
+            with pytest.raises(InvalidStatus, match=str(status)):
+                await connect(f"{address}{target}", origin=sender, proxy=None)
+        with pytest.raises(Refused, match="the token is missing or wrong"):
+            async with open_client(f"{origin}/#token=other"):
+                pass
+        assert await asyncio.to_thread(server.interrupt) == 0

@@ -18,7 +18,7 @@ const module = await WebAssembly.compile(await readFile(`${site}/voxrt/voxrt.was
 const sha = (bytes) => createHash("sha256").update(bytes).digest("hex");
 
 const results = [];
-for (const { files, depth, fill, bake, budget, frames } of jobs) {
+for (const { files, depth, fill = "auto", bake, budget, frames = [] } of jobs) {
   const voxrt = await Voxrt.load(module);
   try {
     const given = await Promise.all(files.map(async (path) => ({ name: basename(path), bytes: new Uint8Array(await readFile(path)) })));

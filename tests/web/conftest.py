@@ -6,7 +6,7 @@ from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from typing import ClassVar
 
 import pytest
-from fakes.browser import chromium
+from fakes.browser import Browser, chromium
 from fakes.site import site
 
 
@@ -41,7 +41,14 @@ def paths():
 
 
 @pytest.fixture(scope="module")
-def browser(address: str):
+def opened_browser(address: str):
     with chromium() as one:
         one.address = address
         yield one
+
+
+@pytest.fixture
+def browser(opened_browser: Browser):
+    """The browser of the module; the page must say nothing severe on its console."""
+    yield opened_browser
+    assert opened_browser.faults() == []

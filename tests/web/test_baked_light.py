@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-import hashlib
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 from assets import asset, over_assets
-from fakes.site import ROOT, node, site
+from fakes.site import ROOT, assert_same_memory, page_builds
 
 import voxrt
 
-SCRIPT = Path(__file__).with_name("build_and_render.mjs")
+if TYPE_CHECKING:
+    from pathlib import Path
+
 DAYLIGHTS = {
     "default": ({}, {"sun": [1, 3, 2], "sky": [0.4, 0.4, 0.4], "samples": 64}),
     "other": (
@@ -22,19 +23,10 @@ DAYLIGHTS = {
 }
 
 
-def bake_both(files: list[Path], depth: int, options: dict, daylight: dict) -> tuple[voxrt.BuildResult, dict]:
-    job = {"files": [str(one) for one in files], "depth": depth, "fill": "auto", "bake": daylight, "frames": []}
-    (found,) = node(SCRIPT, {"site": str(site()), "jobs": [job]})
-    return voxrt.build(files[0], depth=depth, bake=True, **options), found
-
-
-def assert_same(native: voxrt.BuildResult, found: dict) -> None:
-    assert "problem" not in found, found
-    assert found["materials"] == [
-        {"name": one.name, "colour": list(one.colour), "mirror": one.mirror, "authored": one.authored}
-        for one in native.rom.materials
-    ]
-    assert found["words"] == hashlib.sha256(native.octree.words.tobytes()).hexdigest()
+def assert_same_light(files: list[Path], depth: int, options: dict, daylight: dict) -> None:
+    native = voxrt.build(files[0], depth=depth, bake=True, **options)
+    (found,) = page_builds(files, depth=depth, bake=daylight)
+    assert_same_memory(found, native.rom)
     baked = found["baked"]
     assert (baked["voxels"], baked["wordsBefore"]) == (native.bake.voxels, native.bake.words_before)
     assert baked["words"] == native.bake.words == found["count"]
@@ -47,7 +39,7 @@ def assert_same(native: voxrt.BuildResult, found: dict) -> None:
     ids=lambda value: value[0] if isinstance(value, list) else str(value),
 )
 def test_examples_have_the_light_of_the_native_module(files: list[str], depth: int, daylight: str) -> None:
-    assert_same(*bake_both([ROOT / "examples" / name for name in files], depth, *DAYLIGHTS[daylight]))
+    assert_same_light([ROOT / "examples" / name for name in files], depth, *DAYLIGHTS[daylight])
 
 
 @over_assets(
@@ -60,4 +52,4 @@ def test_examples_have_the_light_of_the_native_module(files: list[str], depth: i
 def test_shared_assets_have_the_light_of_the_native_module(name: str) -> None:
     path = asset(name)
     beside = [one for one in path.parent.iterdir() if one.is_file() and one != path]
-    assert_same(*bake_both([path, *beside], 7, *DAYLIGHTS["default"]))
+    assert_same_light([path, *beside], 7, *DAYLIGHTS["default"])

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import hashlib
-from pathlib import Path
 
 import pytest
-from fakes.site import ROOT, node, site
+from fakes.site import ROOT, node
 
 import voxrt
 from voxrt.boards.beam import SCREEN, fit_beam
@@ -15,7 +14,6 @@ from voxrt.boards.board_scenes import board_scene
 from voxrt.export import Blob
 from voxrt.views.viewpoint import orbit
 
-SCRIPT = Path(__file__).with_name("make_bitstreams.mjs")
 CASES = [("courtyard.glb", "ulx3s-12f", 7, False), ("house.obj", "ulx3s-45f", 5, True)]
 
 
@@ -35,7 +33,7 @@ def test_a_bitstream_has_the_bytes_of_the_command(source: str, name: str, depth:
         "flat": flat,
         "name": name,
     }
-    (found,) = node(SCRIPT, {"site": str(site()), "jobs": [job]})
+    (found,) = node("make_bitstreams.mjs", jobs=[job])
     assert (found["scale"], found["lead"]) == (beam.scale, beam.lead)
     assert found["cyclesPerPixel"] == beam.cycles_per_pixel
     assert found["framesPerSecond"] == beam.frames_per_second

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import hashlib
-from pathlib import Path
-
 import pytest
-from fakes.site import ROOT, node, site
+from fakes.site import ROOT, assert_same_memory, page_builds
 
 import voxrt
 
-SCRIPT = Path(__file__).with_name("build_and_render.mjs")
 DAYLIGHT = {"sun": [1, 3, 2], "sky": [0.4, 0.4, 0.4], "samples": 64}
 CASES = [
     (["courtyard.glb"], 7, 3000, False),
@@ -23,8 +19,7 @@ CASES = [
 
 
 def build_in_node(files: list[str], depth: int, **options: object) -> dict:
-    job = {"files": [str(ROOT / "examples" / name) for name in files], "depth": depth, "fill": "auto", "frames": []}
-    (found,) = node(SCRIPT, {"site": str(site()), "jobs": [{**job, **options}]})
+    (found,) = page_builds([ROOT / "examples" / name for name in files], depth=depth, **options)
     return found
 
 
@@ -34,9 +29,7 @@ def test_fitted_memories_have_the_words_of_the_native_module(
 ) -> None:
     native = voxrt.build(ROOT / "examples" / files[0], depth=depth, budget=words, bake=bake)
     found = build_in_node(files, depth, budget=words, bake=DAYLIGHT if bake else None)
-    assert "problem" not in found, found
-    assert found["words"] == hashlib.sha256(native.octree.words.tobytes()).hexdigest()
-    assert [one["colour"] for one in found["materials"]] == [list(one.colour) for one in native.rom.materials]
+    assert_same_memory(found, native.rom)
     fit, fitted = native.budget.fit, found["fitted"]
     assert (fitted["surface"], fitted["changed"], fitted["appeared"]) == (fit.surface, fit.changed, fit.appeared)
     assert fitted["wordsShared"] == fit.words_shared

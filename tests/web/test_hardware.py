@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import hashlib
-from pathlib import Path
-
-import numpy as np
 import pytest
-from fakes.site import ROOT, node, site
+from fakes.site import ROOT, node, registers_of, sha
 
 import voxrt
 from voxrt import octree
@@ -16,7 +12,6 @@ from voxrt.octree.camera import frame_points as camera_for
 from voxrt.sim import outline, render
 from voxrt.sim.engine_arguments import palette_of
 
-SCRIPT = Path(__file__).with_name("run_hardware.mjs")
 SIZE = (80, 60)
 LOOKS = {
     "faces": (Lighting(), {"faces": list(FACES)}),
@@ -26,11 +21,10 @@ LOOKS = {
 
 
 def job(rom: voxrt.Rom, camera: Camera, look: dict, **other: object) -> dict:
-    registers = {name: getattr(camera, name) for name in ("position", "look", "right", "up")}
     return {
         "words": rom.octree.words.tolist(),
         "depth": rom.octree.depth,
-        "camera": registers,
+        "camera": registers_of(camera),
         "size": SIZE,
         "look": {"materials": palette_of(rom)[: len(rom.materials)].tolist(), **look},
         "limit": len(rom.octree.words),
@@ -39,11 +33,7 @@ def job(rom: voxrt.Rom, camera: Camera, look: dict, **other: object) -> dict:
 
 
 def run(*jobs: dict) -> list[dict]:
-    return node(SCRIPT, {"site": str(site()), "jobs": jobs})
-
-
-def sha(array: np.ndarray) -> str:
-    return hashlib.sha256(np.ascontiguousarray(array).tobytes()).hexdigest()
+    return node("run_hardware.mjs", jobs=jobs)
 
 
 @pytest.mark.parametrize(("name", "depth"), [("courtyard.glb", 7), ("planet.glb", 9), ("house.obj", 4)])

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import hashlib
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
-from fakes.site import node, site
+from fakes.site import assert_same_memory, page_builds
 
 import voxrt
 
-SCRIPT = Path(__file__).with_name("build_and_render.mjs")
+if TYPE_CHECKING:
+    from pathlib import Path
+
 CUBE = """
         int[] faceVertexCounts = [4, 4, 4, 4, 4, 4]
         int[] faceVertexIndices = [0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5]
@@ -104,19 +105,14 @@ STAGES = {
 }
 
 
-def read_both(path: Path) -> tuple[voxrt.BuildResult, dict]:
-    job = {"files": [str(path)], "depth": 7, "fill": "auto", "frames": []}
-    (found,) = node(SCRIPT, {"site": str(site()), "jobs": [job]})
-    return voxrt.build(path, depth=7, geometry="render"), found
-
-
 @pytest.mark.parametrize("kind", ["usda", "usdc"])
 @pytest.mark.parametrize("name", STAGES)
 def test_copies_have_the_words_of_voxrt_build(tmp_path: Path, name: str, kind: str) -> None:
-    native, found = read_both(exported(STAGES[name], tmp_path / f"many.{kind}"))
-    assert "problem" not in found, found
+    path = exported(STAGES[name], tmp_path / f"many.{kind}")
+    native = voxrt.build(path, depth=7, geometry="render")
+    (found,) = page_builds([path], depth=7)
+    assert_same_memory(found, native.rom)
     assert [one["name"] for one in found["objects"]] == [one.name for one in native.objects]
-    assert found["words"] == hashlib.sha256(native.octree.words.tobytes()).hexdigest()
     masked = [one for one in found["warnings"] if one["kind"] == "invisible"]
     assert sum(one["count"] for one in masked) == {"masked": 2, "masked by name": 1}.get(name, 0)
 
@@ -158,7 +154,6 @@ def test_contradictions_are_refused(tmp_path: Path) -> None:
         "itself": (stage(prototypes="</many/cube>, </many>", indices="0, 1, 1, 0, 1"), "copies itself"),
         "absent": (stage(prototypes="</many/cube>, </many/none>"), "/place/many/none does not exist"),
     }
-    paths = [exported(text, tmp_path / f"{name}.usda") for name, (text, _) in texts.items()]
-    jobs = [{"files": [str(path)], "depth": 5, "fill": "auto", "frames": []} for path in paths]
-    for (_, problem), found in zip(texts.values(), node(SCRIPT, {"site": str(site()), "jobs": jobs}), strict=True):
+    files = [[exported(text, tmp_path / f"{name}.usda")] for name, (text, _) in texts.items()]
+    for (_, problem), found in zip(texts.values(), page_builds(*files, depth=5), strict=True):
         assert problem in found["problem"]

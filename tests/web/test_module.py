@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import hashlib
-from pathlib import Path
+from typing import TYPE_CHECKING
 
-import numpy as np
 import pytest
-from fakes.site import node, site
+from fakes.site import ROOT, assert_same_memory, node, objects_of, page_builds, registers_of, sha, warnings_of
 
 import voxrt
 from voxrt.octree.camera import FACES, Camera, Lighting
@@ -15,8 +13,9 @@ from voxrt.octree.camera import frame_points as camera_for
 from voxrt.sim import outline, render
 from voxrt.voxelize import DEFAULT_COLOUR, EMPTY
 
-ROOT = Path(__file__).resolve().parents[2]
-SCRIPT = Path(__file__).with_name("build_and_render.mjs")
+if TYPE_CHECKING:
+    from pathlib import Path
+
 SIZE = (201, 151)
 
 LOOKS = {
@@ -26,14 +25,6 @@ LOOKS = {
     "lit": Lighting((4000, 6000, 3000), on=True, ambient=60),
     "mirrors": Lighting((4000, 6000, 3000), on=True, bounces=3),
 }
-
-
-def sha(array: np.ndarray) -> str:
-    return hashlib.sha256(np.ascontiguousarray(array).tobytes()).hexdigest()
-
-
-def in_node(jobs: list[dict]) -> list[dict]:
-    return node(SCRIPT, {"site": str(site()), "jobs": jobs})
 
 
 def cameras(rom: voxrt.Rom) -> list[Camera]:
@@ -50,15 +41,11 @@ def shading_of(lighting: Lighting) -> dict:
 
 def job(files: list[Path], rom: voxrt.Rom, looks: list[Lighting], depth: int) -> dict:
     frames = [
-        {
-            "camera": {name: getattr(camera, name) for name in ("position", "look", "right", "up")},
-            "size": SIZE,
-            "shading": shading_of(look),
-        }
+        {"camera": registers_of(camera), "size": SIZE, "shading": shading_of(look)}
         for camera in cameras(rom)
         for look in looks
     ]
-    return {"files": [str(path) for path in files], "depth": depth, "fill": "auto", "frames": frames}
+    return {"files": [str(path) for path in files], "depth": depth, "frames": frames}
 
 
 EXAMPLES = {"courtyard": ["courtyard.glb"], "planet": ["planet.glb"], "house": ["house.obj", "house.mtl"]}
@@ -70,21 +57,11 @@ def test_examples_are_built_and_rendered_as_natively(name: str, depth: int) -> N
     files = [ROOT / "examples" / file for file in EXAMPLES[name]]
     native = voxrt.build(files[0], depth=depth)
     looks = list(LOOKS.values()) if depth == 7 else [Lighting()]
-    (found,) = in_node([job(files, native.rom, looks, depth)])
-    assert "problem" not in found, found
-    assert found["count"] == len(native.octree.words)
-    assert found["words"] == sha(native.octree.words)
+    (found,) = node("build_and_render.mjs", jobs=[job(files, native.rom, looks, depth)])
+    assert_same_memory(found, native.rom)
     assert found["grid"] == {"origin": list(native.rom.grid.origin), "voxelSize": native.rom.grid.voxel_size}
-    assert found["materials"] == [
-        {"name": one.name, "colour": list(one.colour), "mirror": one.mirror, "authored": one.authored}
-        for one in native.rom.materials
-    ]
-    assert found["objects"] == [
-        {"name": one.name, "mode": str(one.mode), "voxels": one.voxels} for one in native.objects
-    ]
-    assert [(one["kind"], one["message"], one["count"]) for one in found["warnings"]] == [
-        (one.kind, one.message, one.count) for one in native.warnings
-    ]
+    assert found["objects"] == objects_of(native)
+    assert found["warnings"] == warnings_of(native.warnings)
     pairs = [(camera, look) for camera in cameras(native.rom) for look in looks]
     for (camera, look), picture in zip(pairs, found["pictures"], strict=True):
         frame = render(native.rom, camera, SIZE, engine="model", lighting=look)
@@ -97,9 +74,9 @@ def test_examples_are_built_and_rendered_as_natively(name: str, depth: int) -> N
 def test_a_memory_is_shown_as_it_was_written(tmp_path: Path) -> None:
     native = voxrt.build(ROOT / "examples" / "dog.usda", tmp_path, depth=6)
     files = [native.outputs["mem"], native.outputs["manifest"]]
-    (found, bare) = in_node(
-        [job(files, native.rom, list(LOOKS.values()), 6), job(files[:1], native.rom, [Lighting()], 6)]
-    )
+    looks = list(LOOKS.values())
+    jobs = [job(files, native.rom, looks, 6), job(files[:1], native.rom, [Lighting()], 6)]
+    found, bare = node("build_and_render.mjs", jobs=jobs)
     assert found["words"] == bare["words"] == sha(native.octree.words)
     assert found["depth"] == 6
     assert bare["depth"] == voxrt.octree.decode(native.octree.words, "report", None).depth
@@ -121,7 +98,7 @@ def test_errors_are_one_line_and_those_of_the_native_module(tmp_path: Path) -> N
     }
     for name, content in texts.items():
         (tmp_path / name).write_text(content)
-    found = in_node([{"files": [str(tmp_path / name)], "depth": 5, "fill": "auto", "frames": []} for name in texts])
+    found = page_builds(*([tmp_path / name] for name in texts), depth=5)
     for one in found:
         assert one["problem"]
         assert "\n" not in one["problem"]

@@ -5,19 +5,17 @@ The folder usd_stages holds a stage for each of USD's features; here are those t
 
 from __future__ import annotations
 
-import hashlib
 import zipfile
 from pathlib import Path
 
 import numpy as np
 import pytest
 from assets import ROOT as ASSETS
-from fakes.site import node, site
+from fakes.site import assert_same_memory, objects_of, page_builds
 from PIL import Image
 
 import voxrt
 
-SCRIPT = Path(__file__).with_name("build_and_render.mjs")
 STAGES = sorted(Path(__file__).with_name("usd_stages").glob("*.usda"))
 DEPTH = 5
 
@@ -73,10 +71,9 @@ MADE = {
 }
 
 
-def jobs(paths: list[Path]) -> list[dict]:
-    images = {path: [str(one) for one in path.parent.glob("*.png")] for path in paths}
-    rows = [{"files": [str(path), *images[path]], "depth": DEPTH, "fill": "auto", "frames": []} for path in paths]
-    return node(SCRIPT, {"site": str(site()), "jobs": rows})
+def with_images(paths: list[Path]) -> list[dict]:
+    """What the page makes of each file, which is dropped with the images beside it."""
+    return page_builds(*([path, *path.parent.glob("*.png")] for path in paths), depth=DEPTH)
 
 
 @pytest.fixture(scope="module")
@@ -96,18 +93,12 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def pages(written: Path) -> dict[str, dict]:
     """What the page makes of each file."""
     paths = [path for path in written.iterdir() if path.suffix in (".usda", ".usdc")]
-    return {path.name: one for path, one in zip(paths, jobs(paths), strict=True)}
+    return {path.name: one for path, one in zip(paths, with_images(paths), strict=True)}
 
 
 def assert_same(native: voxrt.BuildResult, found: dict) -> None:
-    assert "problem" not in found, found
-    assert [(one["name"], one["colour"], one["authored"]) for one in found["materials"]] == [
-        (one.name, list(one.colour), one.authored) for one in native.rom.materials
-    ]
-    assert [(one["name"], one["mode"], one["voxels"]) for one in found["objects"]] == [
-        (one.name, str(one.mode), one.voxels) for one in native.objects
-    ]
-    assert found["words"] == hashlib.sha256(native.octree.words.tobytes()).hexdigest()
+    assert_same_memory(found, native.rom)
+    assert found["objects"] == objects_of(native)
 
 
 @pytest.mark.parametrize("name", [*(path.stem for path in STAGES), *MADE])
@@ -137,7 +128,7 @@ def test_assets_have_the_words_of_voxrt_build() -> None:
     paths = [path for name in REAL if (path := ASSETS / "usd" / name).exists()]
     if not paths:
         pytest.skip(f"no USD files below {ASSETS}; set VOXRT_ASSETS to the folder of assets")
-    for path, found in zip(paths, jobs(paths), strict=True):
+    for path, found in zip(paths, with_images(paths), strict=True):
         assert_same(voxrt.build(path, depth=DEPTH, geometry="render"), found)
 
 
@@ -196,7 +187,7 @@ def test_contradictions_and_what_would_not_end_are_refused(tmp_path: Path) -> No
         (tmp_path / f"{name}.usda").write_text(stage(body))
     (tmp_path / "unit.usda").write_text(stage(mesh("a"), "metersPerUnit = 0"))
     texts = [tmp_path / f"{name}.usda" for name in (*REFUSED, "unit")]
-    found = jobs([*texts, packed(tmp_path / "layers.usdz", 25), packed(tmp_path / "few.usdz", 3)])
+    found = with_images([*texts, packed(tmp_path / "layers.usdz", 25), packed(tmp_path / "few.usdz", 3)])
     parts = [*(problem for _, problem in REFUSED.values()), "metersPerUnit 0 is not a positive number", "are too many"]
     for one, problem in zip(found[:-1], parts, strict=True):
         assert problem in one["problem"]
@@ -216,9 +207,8 @@ def test_layers_are_dropped_together(tmp_path: Path) -> None:
     }
     for name, text in texts.items():
         (tmp_path / name).write_text(text)
-    files = [str(tmp_path / name) for name in texts]
-    job = {"files": files, "depth": DEPTH, "fill": "auto", "frames": []}
-    (found,) = node(SCRIPT, {"site": str(site()), "jobs": [job]})
+    files = [tmp_path / name for name in texts]
+    (found,) = page_builds(files, depth=DEPTH)
     assert found["name"] == "scene"
     assert_same(voxrt.build(files[-1], depth=DEPTH, geometry="render"), found)
 
@@ -231,6 +221,6 @@ def test_what_is_not_read_is_said(tmp_path: Path) -> None:
         + '    token[] xformOpOrder = ["!resetXformStack!"]\n}\ndef BasisCurves "c"\n{\n}\n'
     )
     (tmp_path / "said.usda").write_text(stage(body))
-    (found,) = jobs([tmp_path / "said.usda"])
+    (found,) = page_builds([tmp_path / "said.usda"], depth=DEPTH)
     kinds = {one["kind"] for one in found["warnings"]}
     assert kinds == {"collider", "collection", "default-material", "reference", "transform", "unsupported-prim"}

@@ -2,44 +2,31 @@
 
 from __future__ import annotations
 
-import hashlib
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 from assets import asset, over_assets
-from fakes.site import node, site
+from fakes.site import ROOT, assert_same_memory, page_builds, warnings_of
 
 import voxrt
 from voxrt.export.vox import read_vox, write_vox
 from voxrt.voxelize import AssetError
 
-ROOT = Path(__file__).resolve().parents[2]
-SCRIPT = Path(__file__).with_name("build_and_render.mjs")
-
-
-def in_node(*paths: Path) -> list[dict]:
-    jobs = [{"files": [str(path)], "depth": 5, "fill": "auto", "frames": []} for path in paths]
-    return node(SCRIPT, {"site": str(site()), "jobs": jobs})
+if TYPE_CHECKING:
+    from pathlib import Path
 
 
 def assert_same(path: Path, found: dict) -> None:
     rom, warnings = read_vox(path)
-    assert "problem" not in found, found
-    assert found["depth"] == rom.octree.depth
-    assert found["words"] == hashlib.sha256(rom.octree.words.tobytes()).hexdigest()
-    assert [(one["name"], one["colour"]) for one in found["materials"]] == [
-        (one.name, list(one.colour)) for one in rom.materials
-    ]
-    assert [(one["kind"], one["message"], one["count"]) for one in found["warnings"]] == [
-        (one.kind, one.message, one.count) for one in warnings
-    ]
+    assert_same_memory(found, rom)
+    assert found["warnings"] == warnings_of(warnings)
 
 
 def test_a_scene_of_several_models_has_the_words_of_the_native_reader(tmp_path: Path) -> None:
     files = [tmp_path / "courtyard.vox", tmp_path / "house.vox"]
     write_vox(files[0], voxrt.build(ROOT / "examples" / "courtyard.glb", depth=9).rom)
     write_vox(files[1], voxrt.build(ROOT / "examples" / "house.obj", depth=4).rom)
-    for path, found in zip(files, in_node(*files), strict=True):
+    for path, found in zip(files, page_builds(*([path] for path in files)), strict=True):
         assert_same(path, found)
 
 
@@ -52,7 +39,7 @@ def test_a_scene_of_several_models_has_the_words_of_the_native_reader(tmp_path: 
 )
 def test_shared_scenes_have_the_words_of_the_native_reader(name: str) -> None:
     path = asset(f"vox/{name}")
-    assert_same(path, in_node(path)[0])
+    assert_same(path, *page_builds([path]))
 
 
 def test_broken_files_are_refused_as_natively(tmp_path: Path) -> None:
@@ -66,7 +53,7 @@ def test_broken_files_are_refused_as_natively(tmp_path: Path) -> None:
     }
     for name, content in bad.items():
         (tmp_path / name).write_bytes(content)
-    for name, found in zip(bad, in_node(*(tmp_path / name for name in bad)), strict=True):
+    for name, found in zip(bad, page_builds(*([tmp_path / name] for name in bad)), strict=True):
         with pytest.raises(AssetError) as caught:
             read_vox(tmp_path / name)
         # The native message puts the fix on a line of its own.
