@@ -140,7 +140,6 @@ The video part of the report, HDMI and VDMA, is what Vivado made of it (table 9)
 
 
 def area(cells: dict[str, Any]) -> Area:
-    """Count what a netlist takes."""
     counted = Counter(cell["type"] for cell in cells.values())
     logic = sum(count for cell, count in counted.items() if is_logic(cell))
     memory = sum(MEMORY_LUTS[cell] * count for cell, count in counted.items() if cell in MEMORY_LUTS)
@@ -155,7 +154,6 @@ def area(cells: dict[str, Any]) -> Area:
 
 
 def row(name: str, parameters: dict[str, int], area: Area) -> str:
-    """Give a row of the table."""
     words = 8 * 2 ** parameters["BlockBits"]
     memory = "" if area.memory_luts is None else f"{area.memory_luts:,}"
     return (
@@ -179,7 +177,6 @@ def written_rows() -> dict[str, str]:
 
 
 def main() -> None:
-    """Estimate and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*")
     parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")

@@ -80,7 +80,6 @@ def table(rows: dict[str, str]) -> str:
 
 
 def main() -> None:
-    """Place, route and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     known = designs()
     parser.add_argument("names", nargs="*", help=f"designs; all: {', '.join(known)}")
