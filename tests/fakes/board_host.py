@@ -6,20 +6,17 @@ import struct
 import zlib
 
 import numpy as np
+from fakes.box_scenes import picture_of
 
 from voxrt.board.designs.boot_table import BOARD_REGISTERS, CAMERAS
-from voxrt.board.simulated.model import ModelDevice
 from voxrt.board.view import Lighting, View
 from voxrt.octree.camera import look_at
 
 
 def picture(scene, camera, scale):
     """What the screen shows: each pixel of the exact model as a square."""
-    model = ModelDevice()
-    model.write_memory(0, scene.words)
-    model.write_materials(scene.colours, scene.mirrors)
-    model.select_scene(0, scene.depth)
-    frame = model.frame(View(camera, (640 >> scale, 480 >> scale), scene.background, Lighting())).colour
+    view = View(camera, (640 >> scale, 480 >> scale), scene.background, Lighting())
+    frame = picture_of(scene, view)
     return frame.repeat(1 << scale, 0).repeat(1 << scale, 1)
 
 
