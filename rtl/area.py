@@ -169,9 +169,9 @@ def table(rows: dict[str, str]) -> str:
     return HEAD + "".join(rows[name] + "\n" for name in names if name in rows)
 
 
-def written_rows() -> dict[str, str]:
-    """Give the rows of the written table, by their first cell."""
-    lines = RESULTS.read_text().splitlines() if RESULTS.exists() else []
+def written_rows(page: Path) -> dict[str, str]:
+    """Give the rows of a written table, by their first cell."""
+    lines = page.read_text().splitlines() if page.exists() else []
     rows = [line for line in lines if line.startswith("| ")]
     return {line.split("|")[1].strip(): line for line in rows[1:]}
 
@@ -200,7 +200,7 @@ def main() -> None:
     print(table(rows), end="")
     if options.write:
         RESULTS.parent.mkdir(exist_ok=True)
-        RESULTS.write_text(table(written_rows() | rows if options.names else rows))
+        RESULTS.write_text(table(written_rows(RESULTS) | rows if options.names else rows))
 
 
 if __name__ == "__main__":
