@@ -14,7 +14,7 @@ from runpy import run_path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from report import ASSETS, ROOT, options_of, write_page
+from report import ASSETS, ROOT, options_of, publish, table
 
 import voxrt
 from voxrt import octree
@@ -24,6 +24,12 @@ if TYPE_CHECKING:
 
 HEAD = ("scene", "moves", "frames", "depth", "words alone", "words together", "ratio", "seconds")
 FRAMES = 24
+ABOUT = """# Animation
+
+Words of the frames of an animation, each in a memory of its own, and together in one, where equal blocks of
+all frames are stored once. Frames are spread evenly over the animation. Written by `python bench/animation.py --write`.
+
+"""
 
 ANIMATED = (
     ("gltf/trimesh/CesiumMilkTruck.glb", "", "rigid parts: wheels", (0.0, 1.25)),
@@ -51,7 +57,6 @@ def scenes(depths: tuple[int, ...]) -> Iterator[tuple[str, str, voxrt.BuildResul
 
 
 def row(name: str, moves: str, built: voxrt.BuildResult) -> tuple[str, ...]:
-    """Give the row of one animation."""
     assert built.animation is not None
     words, alone = len(built.octree.words), built.animation.words_alone
     return (
@@ -63,17 +68,6 @@ def row(name: str, moves: str, built: voxrt.BuildResult) -> tuple[str, ...]:
         f"{words:,}",
         f"{words / alone:.2f}",
         f"{sum(built.seconds.values()):.1f}",
-    )
-
-
-def table(rows: list[tuple[str, ...]]) -> str:
-    """Give the page of results."""
-    lines = ["| " + " | ".join(HEAD) + " |", "|---|---|---:|---:|---:|---:|---:|---:|"]
-    lines += ["| " + " | ".join(cells) + " |" for cells in rows]
-    return (
-        "# Animation\n\nWords of the frames of an animation, each in a memory of its own, and together in one, where "
-        "equal blocks of\nall frames are stored once. Frames are spread evenly over the animation. Written by "
-        "`python bench/animation.py --write`.\n\n" + "\n".join(lines) + "\n"
     )
 
 
@@ -102,7 +96,6 @@ def plot(found: list[tuple[str, voxrt.BuildResult]], file: Path) -> None:
 
 
 def main() -> None:
-    """Build the animations and print the table."""
     parser = options_of(__doc__)
     parser.add_argument("--plot", type=Path, help="draw words against frames into this file")
     parser.add_argument("--depth", type=int, nargs="+", default=[7, 8], help="levels of the grids")
@@ -114,10 +107,8 @@ def main() -> None:
         print(json.dumps(dict(zip(HEAD, rows[-1], strict=True))), flush=True)
         if built.octree.depth == options.depth[0]:
             found.append((name, built))
-    page = table(rows)
-    print(page, f"{time.perf_counter() - started:.0f} s")
-    if options.write:
-        write_page("animation.md", page)
+    publish("animation.md", ABOUT + table(HEAD, rows, left=2), write=options.write)
+    print(f"{time.perf_counter() - started:.0f} s")
     if options.plot:
         plot(found, options.plot)
 

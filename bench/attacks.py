@@ -50,7 +50,6 @@ def ignore(_stage: str, _done: int, _total: int) -> None:
 
 
 async def ten_floods(target: Target) -> None:
-    """Ten connections send as much as they can."""
     flooding = await asyncio.to_thread(
         subprocess.Popen, [sys.executable, floods.__file__, str(target.port)], stdin=subprocess.PIPE
     )
@@ -61,7 +60,6 @@ async def ten_floods(target: Target) -> None:
 
 
 async def read_nothing(target: Target) -> None:
-    """Viewers read nothing after the handshake."""
     async with contextlib.AsyncExitStack() as stack:
         for _ in range(5):
             with contextlib.suppress(OSError):
@@ -83,7 +81,6 @@ async def malformed_messages(target: Target) -> None:
 
 
 async def connect_and_leave(target: Target) -> None:
-    """Viewers come, and vanish without a word."""
     for _ in range(5):
         with contextlib.suppress(Refused):
             async with open_client(f"http://127.0.0.1:{target.port}/") as client:
@@ -106,7 +103,6 @@ async def noise(target: Target) -> None:
 
 
 async def connections(target: Target) -> None:
-    """Open many connections, and say nothing."""
     async with contextlib.AsyncExitStack() as stack:
         for _ in range(300):
             await stack.enter_async_context(_socket(target.port))
@@ -114,7 +110,6 @@ async def connections(target: Target) -> None:
 
 
 async def foreign_pages(target: Target) -> None:
-    """Connect as pages of other sites do."""
     for _ in range(10):
         with contextlib.suppress(InvalidHandshake, OSError):
             async with connect(f"ws://127.0.0.1:{target.port}/v2", origin="http://evil.example", proxy=None):
@@ -135,12 +130,10 @@ async def legacy(target: Target) -> None:
 
 
 async def scene_of_death(target: Target) -> None:
-    """Upload a scene whose every frame takes minutes."""
     await _refused(target, {"death.blob": blob_of(never_merged(16))}, "too slow to show")
 
 
 async def damaged_files(target: Target) -> None:
-    """Upload files that are no scenes."""
     blob = bytearray(blob_of(scene("x")))
     blob[-10] ^= 1
     for files, problem in (
@@ -152,7 +145,6 @@ async def damaged_files(target: Target) -> None:
 
 
 async def cancelled_builds(target: Target) -> None:
-    """Upload a scene whose build takes long, and cancel it."""
     async with target.turn:
         client = target.controller
         upload = asyncio.create_task(client.upload({"long.obj": LONG}, ignore))

@@ -31,7 +31,6 @@ def cpu() -> float:
 
 
 def measure(scene: Scene, depth: int, threads: int) -> str:
-    """Give the row of one scene."""
     built = voxrt.build(scene, depth=depth, threads=threads)
     best = None
     for _ in range(RUNS):
@@ -51,7 +50,6 @@ def measure(scene: Scene, depth: int, threads: int) -> str:
 
 
 def main() -> None:
-    """Measure and print."""
     parser = options_of(__doc__)
     parser.add_argument("--threads", type=int, default=0)
     options = parser.parse_args()

@@ -8,19 +8,18 @@ model's, and the board's counters of late rows and late frames are read by the s
 
 from __future__ import annotations
 
-import struct
 import sys
 import tempfile
-import zlib
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from report import ROOT, options_of
+from report import ROOT, options_of, publish, table
+from rtl_scenes import terrain
 
 import voxrt
 from voxrt.board.designs import build
-from voxrt.board.designs.boot_table import BOARD_REGISTERS, boot_table, encode_octree
+from voxrt.board.designs.boot_table import boot_table, encode_octree
 from voxrt.board.designs.simulation.board_simulation import BoardSimulation, compile_sources
 from voxrt.boards.beam import SCREEN, BeamFit, fit_beam
 from voxrt.boards.bitstream import BaseDesign, read_board
@@ -29,8 +28,8 @@ from voxrt.export import Blob
 from voxrt.octree import Rom, from_dense
 from voxrt.views.viewpoint import orbit
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-from rtl_scenes import terrain
+sys.path.append(str(ROOT / "tests"))
+from fakes.board_host import Host
 
 if TYPE_CHECKING:
     from voxrt.octree.camera import Camera
@@ -70,7 +69,6 @@ def rom_of(name: str, capacity: int) -> Rom:
 
 
 def watch(rom: Rom, design: BaseDesign, program: Path, folder: Path, frames: int) -> Seen:
-    """Run a board from power-on for a number of frames."""
     lighting = voxrt.Lighting()
     beam = fit_beam(rom, orbit(rom, SCREEN), lighting, design.tracer)
     cameras = orbit(rom, beam.size)
@@ -86,7 +84,8 @@ def watch(rom: Rom, design: BaseDesign, program: Path, folder: Path, frames: int
             pixels, timing = simulation.frames(1)[0]
             vga += timing.is_vga
             exact += np.array_equal(pixels, picture(rom, cameras[number // PERIOD], beam))
-        underruns, late = (counter(simulation, name) for name in ("underruns", "late"))
+        host = Host(simulation)
+        underruns, late = host.register("underruns"), host.register("late")
     return Seen(beam, len(rom.octree.words), frames, exact, vga, underruns, late)
 
 
@@ -96,34 +95,22 @@ def picture(rom: Rom, camera: Camera, beam: BeamFit) -> np.ndarray:
     return frame.repeat(1 << beam.scale, 0).repeat(1 << beam.scale, 1)
 
 
-def counter(simulation: BoardSimulation, name: str) -> int:
-    """Read a register of the board by the serial line."""
-    request = bytes([0x56, 1, 0, 1]) + BOARD_REGISTERS[name].to_bytes(3, "little")
-    answer = simulation.transfer(request + struct.pack("<I", zlib.crc32(request)), 12)
-    assert answer[0] == 0x76, answer.hex()
-    return int.from_bytes(answer[4:8], "little")
-
-
 def report(name: str, design: BaseDesign, found: dict[str, Seen]) -> str:
-    """Give the table in Markdown."""
     lanes = f"{design.core['Lanes']} lane{'' if design.core['Lanes'] == 1 else 's'}"
     heads = ("scene", "words", "picture", "cycles per pixel", "lines ahead")
     heads += ("frames", "exact", "timing of 640 x 480", "rows repeated", "frames late")
-    lines = [
-        f"# {name}: pictures in time",
-        "",
-        f"`python bench/beam.py {name} --write`: sources of the board's design, simulated;",
-        f"{lanes} at {design.clock_hz / 1e6:.1f} MHz, pixel clock 25 MHz.",
-        "",
-        f"| {' | '.join(heads)} |",
-        f"|---|--:|---|{'--:|' * 7}",
-    ]
+    about = (
+        f"# {name}: pictures in time\n\n"
+        f"`python bench/beam.py {name} --write`: sources of the board's design, simulated;\n"
+        f"{lanes} at {design.clock_hz / 1e6:.1f} MHz, pixel clock 25 MHz.\n\n"
+    )
+    rows = []
     for scene, seen in found.items():
         beam, size = seen.beam, f"{seen.beam.size[0]} x {seen.beam.size[1]}"
         row = [scene, f"{seen.words:,}", size, f"{beam.cycles_per_pixel:.2f}", f"{beam.lead:.1f}"]
         row += [str(count) for count in (seen.frames, seen.exact, seen.vga, seen.underruns, seen.late)]
-        lines.append(f"| {' | '.join(row)} |")
-    return "\n".join(lines) + "\n"
+        rows.append(row)
+    return about + table(heads, rows, left=1)
 
 
 def main() -> int:
@@ -141,10 +128,7 @@ def main() -> int:
             rom = rom_of(scene, design.capacity)
             found[scene] = watch(rom, design, program, Path(folder), options.frames)
             print(scene, found[scene], file=sys.stderr)
-    text = report(options.name, design, found)
-    print(text, end="")
-    if options.write:
-        (ROOT / "bench" / "results" / f"beam-{options.name}.md").write_text(text, encoding="utf-8")
+    publish(f"beam-{options.name}.md", report(options.name, design, found), write=options.write)
     return 0 if all(seen.holds for seen in found.values()) else 1
 
 

@@ -12,11 +12,9 @@ from __future__ import annotations
 import argparse
 import json
 import os
-import struct
 import sys
 import tempfile
 import time
-import zlib
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -41,17 +39,18 @@ from voxrt.board.designs.boot_table import (
 from voxrt.board.designs.simulation.board_simulation import BoardSimulation, compile_placed
 from voxrt.board.designs.simulation.placed_netlist import MODELS, placed_verilog, write_block_rams
 from voxrt.board.register_writes import camera_writes
-from voxrt.board.simulated.model import ModelDevice
-from voxrt.board.view import Lighting, View
+from voxrt.board.view import Lighting
 from voxrt.boards.board_scenes import load_scene
-from voxrt.octree.camera import look_at
 from voxrt.octree.words import move_pointers
+
+sys.path.append(str(Path(__file__).resolve().parents[1] / "tests"))
+from fakes.board_host import Host, cameras_around, picture
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.board.scene import Scene
-    from voxrt.board.view import Camera
+    from voxrt.octree.camera import Camera
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 SCENES = {"house.obj": 5, "planet.glb": 5, "courtyard.glb": 6}
@@ -61,43 +60,14 @@ FREE_LIST = 1024  # words of the table that the boot list does not use
 
 
 def orbit(scene: Scene) -> list[Camera]:
-    """Make cameras about the middle of the world."""
-    side = 2.0**scene.depth
-    angles = 2 * np.pi * np.arange(CAMERAS) / CAMERAS
-    return [
-        look_at(side * np.array([0.5 + 1.3 * np.cos(a), 1.2, 0.5 + 1.3 * np.sin(a)]), np.full(3, side / 2), size=SIZE)
-        for a in angles
-    ]
-
-
-def picture(scene: Scene, camera: Camera) -> NDArray[np.uint8]:
-    """Give what the screen must show."""
-    model = ModelDevice()
-    model.write_memory(0, scene.words)
-    model.write_materials(scene.colours, scene.mirrors)
-    model.select_scene(0, scene.depth)
-    frame = model.frame(View(camera, SIZE, scene.background, Lighting())).colour
-    return frame.repeat(1 << SCALE, 0).repeat(1 << SCALE, 1)
+    return cameras_around(scene, SIZE, radius=1.3, height=0.7, steps=CAMERAS)
 
 
 def contents_of(scene: Scene, board: dict[str, Any]) -> dict[str, NDArray[np.uint32]]:
-    """Give what the memories hold for a scene."""
     return {
         "octree": encode_octree(scene.words, board.get("boot_block_bits", board["core"]["BlockBits"])),
         "table": boot_table(scene, orbit(scene), Lighting(), scale=SCALE, control=RUN | TURN, period=1),
     }
-
-
-def send(simulation: BoardSimulation, address: int, words: list[int]) -> bool:
-    """Write words by the serial line; tell whether all were acknowledged."""
-    done = True
-    for start in range(0, len(words), 255):
-        part = words[start : start + 255]
-        data = bytes([0x56, 2, 0, len(part)]) + (address + 4 * start).to_bytes(3, "little")
-        data += struct.pack(f"<{len(part)}I", *part)
-        answer = simulation.transfer(data + struct.pack("<I", zlib.crc32(data)), 8)
-        done &= answer[:4] == bytes([0x76, 0, 0, 0])
-    return done
 
 
 class Placed(NamedTuple):
@@ -156,24 +126,24 @@ def verify_scene(placed: Placed, file: str, scene: Scene, new: Scene | None, wor
     cameras = orbit(scene)
     with BoardSimulation(placed.program, work) as simulation:
         seen = simulation.frames(placed.black + 2)[placed.black :]
-        equal = all(np.array_equal(pixels, picture(scene, cameras[i])) for i, (pixels, _) in enumerate(seen))
+        equal = all(np.array_equal(pixels, picture(scene, cameras[i], SCALE)) for i, (pixels, _) in enumerate(seen))
         note("two frames at the pins are the exact model's, byte for byte", holds=equal)
         note("timing at the pins is that of 640 x 480", holds=all(timing.is_vga for _, timing in seen))
         if new is not None:
             base = -(-len(scene.words) // 8) * 8
             control = (BOARD_REGISTERS["control"], [1 << 8 | SCALE << 4 | STEERED | RUN])
             swap = [*scene_writes(new, Lighting(), SIZE, base), *camera_writes(orbit(new)[9]), control]
-            done = send(simulation, OCTREE_MEMORY + 4 * base, move_pointers(new.words, base).tolist())
-            done &= send(simulation, TABLE + 4 * FREE_LIST, encode_list(swap))
-            done &= send(simulation, BOARD_REGISTERS["play"], [FREE_LIST])
+            host = Host(simulation)
+            host.write(OCTREE_MEMORY + 4 * base, move_pointers(new.words, base))
+            host.write(TABLE + 4 * FREE_LIST, encode_list(swap))
+            host.write(BOARD_REGISTERS["play"], [FREE_LIST])
             after = simulation.frames(placed.black + 2)[-1][0]
-            equal = done and np.array_equal(after, picture(new, orbit(new)[9]))
+            equal = np.array_equal(after, picture(new, orbit(new)[9], SCALE))
             note("planet.glb, sent by the serial line, is the exact model's picture", holds=equal)
     return found
 
 
 def report(described: dict[str, Any], title: str, checks: list[tuple[str, bool]], seconds: float) -> str:
-    """Give the text of `report.md`."""
     core = ", ".join(f"{name} {value}" for name, value in described["core"].items())
     lines = [
         f"# {title}",

@@ -8,16 +8,19 @@ to those of the whole octree (PSNR in dB and SSIM, means over six views all arou
 
 from __future__ import annotations
 
+import sys
 import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import numpy as np
-from report import ASSETS, ROOT, options_of, table, write_page
+from report import ASSETS, ROOT, options_of, publish, table
 
 import voxrt
 from voxrt import export, octree
 from voxrt.building.fitting import Views, fit_budget
+
+sys.path.append(str(ROOT / "tests"))
+from oracles.worlds import lumps
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -37,24 +40,10 @@ def scenes() -> Iterator[octree.Rom]:
     for materials in (1, 3):
         colours = ((0, 0, 0), (200, 80, 60), (70, 160, 90), (80, 110, 200))[: materials + 1]
         table = tuple(voxrt.Material(f"material {number}", colour) for number, colour in enumerate(colours))
-        yield octree.Rom(f"rough bodies, {materials} materials", octree.from_dense(bodies(7, materials)), table)
-
-
-def bodies(depth: int, materials: int) -> np.ndarray:
-    """Four overlapping balls with rough skins; uint8, a cube indexed [x, y, z]."""
-    rng = np.random.default_rng(0)
-    side = 1 << depth
-    grid = np.stack(np.indices((side,) * 3), -1) + 0.5
-    cube = np.zeros((side,) * 3, np.uint8)
-    for i in range(4):
-        centre, radius = rng.uniform(0.3, 0.7, 3) * side, rng.uniform(0.1, 0.25) * side
-        skin = 0.05 * radius * np.sin(grid @ rng.normal(size=3) * 40 / side)
-        cube[np.linalg.norm(grid - centre, axis=-1) < radius + skin] = 1 + i % materials
-    return cube
+        yield octree.Rom(f"rough bodies, {materials} materials", octree.from_dense(lumps(7, materials)), table)
 
 
 def compare(rom: octree.Rom) -> Iterator[tuple[str, ...]]:
-    """Give the rows of one scene."""
     whole = replace(rom, octree=octree.share(rom.octree))
     for level in (1, 2):
         plain = octree.coarsen(whole.octree, level)
@@ -74,7 +63,6 @@ def compare(rom: octree.Rom) -> Iterator[tuple[str, ...]]:
 
 
 def figures(whole: octree.Rom, fitted: octree.Octree, views: Views) -> tuple[str, ...]:
-    """Hold what fits against the whole."""
     psnr, ssim = views.likeness(fitted)
     return (
         f"{octree.surface_change(whole.octree, fitted).percent:.1f} %",
@@ -85,13 +73,10 @@ def figures(whole: octree.Rom, fitted: octree.Octree, views: Views) -> tuple[str
 
 
 def main() -> None:
-    """Measure and print."""
     parser = options_of(__doc__)
     options = parser.parse_args()
     text = table(HEAD, (row for rom in scenes() for row in compare(rom)))
-    print(text, end="")
-    if options.write:
-        write_page("budget.md", f"# Fitting a budget\n\n{NOTE}\n\n{text}")
+    publish("budget.md", f"# Fitting a budget\n\n{NOTE}\n\n{text}", write=options.write)
 
 
 if __name__ == "__main__":

@@ -53,23 +53,8 @@ ROWS = [
     Row("gargo", GARGO, 10, "close", "2.25, 2.27"),
     Row("gargo", GARGO, 10, "graze", "2.29, 2.38"),
 ]
-
-
-HEADS = (
-    "scene",
-    "depth",
-    "M words",
-    "view",
-    "words per ray",
-    "cycles per pixel",
-    "requests per word",
-    "L1 hits %",
-    "L2 hits %",
-    "lines per pixel",
-    "bytes per pixel",
-    "modelled",
-    "wrong pixels",
-)
+HEADS = ("scene", "depth", "M words", "view", "words per ray", "cycles per pixel", "requests per word", "L1 hits %")
+HEADS += ("L2 hits %", "lines per pixel", "bytes per pixel", "modelled", "wrong pixels")
 
 
 def rom_of(name: str, asset: str, depth: int) -> Rom:
@@ -129,7 +114,6 @@ def _direction(random: np.random.Generator) -> np.ndarray:
 
 
 def measure(row: Row, config: str, dram: Dram) -> str:
-    """Trace a frame; give its row of the table."""
     rom = rom_of(row.scene, row.asset, row.depth)
     camera = camera_of(rom, row.view)
     checked = voxrt.check(rom, camera, SIZE, config=config, dram=dram)
@@ -137,26 +121,16 @@ def measure(row: Row, config: str, dram: Dram) -> str:
     assert cost.cycles is not None
     assert cost.words_read is not None
     assert cost.cache is not None
-    cells = (
-        row.scene,
-        str(row.depth),
-        f"{len(rom.octree.words) / 1e6:.1f}",
-        row.view,
-        f"{cost.words_read / cost.rays:.1f}",
-        f"{cost.cycles / cost.rays:.2f}",
-        f"{cost.cache.word_requests / cost.words_read:.2f}",
-        f"{100 * cost.cache.l1_hits:.1f}",
-        f"{100 * cost.cache.l2_hits:.1f}",
-        f"{cost.cache.lines_read / cost.rays:.3f}",
-        f"{cost.cache.bytes_read / cost.rays:.1f}",
-        row.modelled,
-        str(checked.wrong_pixels),
+    cache, rays = cost.cache, cost.rays
+    return (
+        f"| {row.scene} | {row.depth} | {len(rom.octree.words) / 1e6:.1f} | {row.view} "
+        f"| {cost.words_read / rays:.1f} | {cost.cycles / rays:.2f} | {cache.word_requests / cost.words_read:.2f} "
+        f"| {100 * cache.l1_hits:.1f} | {100 * cache.l2_hits:.1f} | {cache.lines_read / rays:.3f} "
+        f"| {cache.bytes_read / rays:.1f} | {row.modelled} | {checked.wrong_pixels} |"
     )
-    return f"| {' | '.join(cells)} |"
 
 
 def main() -> None:
-    """Measure and print."""
     parser = options_of(__doc__)
     parser.add_argument("--config", default="cached16")
     parser.add_argument("--latency", type=int, default=50)

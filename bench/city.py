@@ -23,7 +23,6 @@ STREET = 10
 
 
 def main() -> None:
-    """Write the files."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=Path)
     parser.add_argument("--count", type=int, default=100_000, help="buildings")

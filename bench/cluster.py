@@ -38,7 +38,6 @@ class Made(NamedTuple):
 
 
 def main() -> None:
-    """Measure, and print both tables."""
     parser = options_of(__doc__)
     parser.add_argument("assets", nargs="+", metavar="ASSET:DEPTH")
     parser.add_argument("--fill", default="surface", choices=("surface", "auto", "solid"))
@@ -135,7 +134,6 @@ def plan(asset: Path, depth: int, fill: str, workers: int) -> str:
 
 
 def joined(depth: int, parts: list[Made]) -> Made:
-    """Join octrees."""
     begun = process_time()
     whole = octree.Assembly(depth)
     for part in parts:

@@ -67,7 +67,6 @@ def joined() -> str:
 
 
 def main() -> None:
-    """Measure, join and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--keep", action="store_true", help="measure nothing anew")
     if not parser.parse_args().keep:

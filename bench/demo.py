@@ -6,18 +6,15 @@ Usage: ``python bench/demo.py [--depth N] [--size WxH] [--write]``. ``--write`` 
 
 from __future__ import annotations
 
-from pathlib import Path
-
-from report import frame_size, machine, options_of, table, write_page
+from report import ROOT, frame_size, machine, options_of, publish, table
 
 import voxrt
 
-SCENE = Path(__file__).resolve().parents[1] / "examples" / "courtyard.glb"
+SCENE = ROOT / "examples" / "courtyard.glb"
 REPEATS = 3
 
 
 def measure(depth: int, size: tuple[int, int]) -> list[tuple[str, str]]:
-    """Build and render the demo, and give the rows of the table."""
     builds = [voxrt.build(SCENE, depth=depth) for _ in range(REPEATS)]
     rom = builds[0].rom
     rows = [
@@ -46,15 +43,12 @@ def measure(depth: int, size: tuple[int, int]) -> list[tuple[str, str]]:
 
 
 def main() -> None:
-    """Measure and print."""
     parser = options_of(__doc__)
     parser.add_argument("--depth", type=int, default=7)
     parser.add_argument("--size", type=frame_size, default="640x480")
     options = parser.parse_args()
     text = table(("what", "measured"), measure(options.depth, options.size))
-    print(text, end="")
-    if options.write:
-        write_page("demo.md", f"# The demo, measured by bench/demo.py\n\n{text}")
+    publish("demo.md", f"# The demo, measured by bench/demo.py\n\n{text}", write=options.write)
 
 
 if __name__ == "__main__":

@@ -33,7 +33,6 @@ def measure(path: Path) -> tuple[list[int], int] | None:
 
 
 def main() -> None:
-    """Measure and print."""
     parser = options_of(__doc__)
     options = parser.parse_args()
     lines, same = [], 0

@@ -51,7 +51,6 @@ def patch(corner: np.ndarray, along: np.ndarray, across: np.ndarray, steps: int)
 
 
 def joined(pieces: list[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
-    """Give one mesh of several."""
     starts = np.cumsum([0, *(len(points) for points, _ in pieces[:-1])])
     return (
         np.concatenate([points for points, _ in pieces]),
@@ -131,7 +130,6 @@ def seconds(scene: voxrt.Scene, depth: int, fill: str) -> float:
 
 
 def main() -> None:
-    """Measure and print."""
     parser = options_of(__doc__)
     parser.add_argument("--depths", default="6,7,8,9", help="levels, with commas between")
     parser.add_argument("--scenes", default="", help="only those whose name has this")

@@ -11,7 +11,7 @@ import time
 from typing import TYPE_CHECKING
 
 import numpy as np
-from report import ASSETS, ROOT, options_of, table, write_page
+from report import ASSETS, ROOT, options_of, publish, table
 
 import voxrt
 from voxrt import export, octree
@@ -48,7 +48,6 @@ def balls(side: int) -> Iterator[tuple[str, np.ndarray]]:
 
 
 def measure(name: str, tree: octree.Octree) -> tuple[str, ...]:
-    """Give the row of one scene."""
     tree = octree.share(tree)
     start = time.perf_counter()
     hidden = octree.hidden_voxels(tree)
@@ -71,13 +70,11 @@ def measure(name: str, tree: octree.Octree) -> tuple[str, ...]:
 
 
 def main() -> None:
-    """Measure and print."""
     parser = options_of(__doc__)
     options = parser.parse_args()
     text = table(HEAD, (measure(name, tree) for name, tree in scenes()))
-    print(text, end="")
-    if options.write:
-        write_page("interior.md", "# Hidden voxels that may be anything\n\nMemory words by `--interior`.\n\n" + text)
+    title = "# Hidden voxels that may be anything\n\nMemory words by `--interior`.\n\n"
+    publish("interior.md", title + text, write=options.write)
 
 
 if __name__ == "__main__":

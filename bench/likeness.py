@@ -117,7 +117,6 @@ def _coarser(pixels: np.ndarray) -> np.ndarray:
 
 
 def figures(picture: np.ndarray, reference: np.ndarray, both: np.ndarray) -> Figures:
-    """Compare a preview with its reference."""
     ours, theirs = linear_from_srgb(picture[both]), linear_from_srgb(reference[both])
     ratio = float((ours @ _LUMINANCE).mean() / max((theirs @ _LUMINANCE).mean(), 1e-9))
     difference = float(ciede2000(lab(ours), lab(theirs)).mean())
@@ -140,7 +139,6 @@ def sheet(rows: list[tuple[str, list[np.ndarray]]]) -> Image.Image:
 
 
 def main() -> None:
-    """Measure and print."""
     parser = options_of(__doc__)
     parser.add_argument("--only", default="", help="assets whose path holds this")
     parser.add_argument("--pictures", type=Path, help="folder for the pictures of each asset")

@@ -7,9 +7,7 @@ some of the folder of assets, and balls that are written for the purpose; ``--wr
 
 from __future__ import annotations
 
-import json
 import platform
-import struct
 import subprocess
 import sys
 import tempfile
@@ -22,9 +20,12 @@ import DracoPy
 import numpy as np
 import trimesh
 from report import ASSETS as FOLDER
-from report import options_of, write_page
+from report import ROOT, options_of, publish, table
 
 from voxrt.voxelize.assets import load
+
+sys.path.append(str(ROOT / "tests"))
+from oracles.gltf_writer import GltfWriter
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -63,28 +64,15 @@ def write_spheres(folder: Path) -> list[Path]:
 def _write_draco(path: Path, ball: trimesh.Trimesh) -> Path:
     """Write a GLB whose only primitive is compressed with Draco."""
     data = DracoPy.encode(ball.vertices.astype(np.float32), ball.faces.astype(np.uint32))
-    count, corners = len(ball.vertices), ball.faces.size
-    extension = {"KHR_draco_mesh_compression": {"bufferView": 0, "attributes": {"POSITION": 0}}}
-    text = json.dumps(
-        {
-            "asset": {"version": "2.0"},
-            "extensionsUsed": list(extension),
-            "extensionsRequired": list(extension),
-            "buffers": [{"byteLength": len(data)}],
-            "bufferViews": [{"buffer": 0, "byteLength": len(data)}],
-            "accessors": [
-                {"componentType": 5126, "type": "VEC3", "count": count, "min": [-1] * 3, "max": [1] * 3},
-                {"componentType": 5125, "type": "SCALAR", "count": corners},
-            ],
-            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "extensions": extension}]}],
-            "nodes": [{"mesh": 0}],
-            "scenes": [{"nodes": [0]}],
-        }
-    ).encode()
-    chunks = [(b"JSON", text + b" " * (-len(text) % 4)), (b"BIN\0", data + bytes(-len(data) % 4))]
-    body = b"".join(struct.pack("<I", len(chunk)) + kind + chunk for kind, chunk in chunks)
-    path.write_bytes(b"glTF" + struct.pack("<II", 2, 12 + len(body)) + body)
-    return path
+    glb = GltfWriter()
+    extension = {"KHR_draco_mesh_compression": {"bufferView": glb.view(data), "attributes": {"POSITION": 0}}}
+    glb.json |= {"extensionsUsed": list(extension), "extensionsRequired": list(extension)}
+    count = len(ball.vertices)
+    glb.add("accessors", {"componentType": 5126, "type": "VEC3", "count": count, "min": [-1] * 3, "max": [1] * 3})
+    glb.add("accessors", {"componentType": 5125, "type": "SCALAR", "count": ball.faces.size})
+    glb.add("meshes", {"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "extensions": extension}]})
+    glb.show(mesh=0)
+    return glb.save(path)
 
 
 LOADERS: dict[str, Callable[[Path], object]] = {
@@ -95,7 +83,6 @@ LOADERS: dict[str, Callable[[Path], object]] = {
 
 
 def repeat(loader: str, path: Path) -> float:
-    """Load a file again and again, and return the median seconds."""
     times: list[float] = []
     while len(times) < REPEATS or (len(times) < MOST_REPEATS and sum(times) < 1):
         start = time.perf_counter()
@@ -105,16 +92,15 @@ def repeat(loader: str, path: Path) -> float:
     return median(times)
 
 
-def measure(path: Path) -> str:
+def measure(path: Path) -> tuple[str, ...]:
     """Give a row of the table; each loader has a process of its own, so that none finds the other's memory."""
     triangles = sum(len(one.mesh.triangles) for one in load(path).objects)
     command = [sys.executable, __file__, "--row", str(path)]
     runs = (subprocess.run([*command, name], check=True, capture_output=True, text=True) for name in LOADERS)
-    return f"| {path.name} | {triangles:,} | " + " | ".join(f"{float(run.stdout) * 1e3:.2f}" for run in runs) + " |"
+    return path.name, f"{triangles:,}", *(f"{float(run.stdout) * 1e3:.2f}" for run in runs)
 
 
 def main() -> None:
-    """Measure and print."""
     parser = options_of(__doc__)
     parser.add_argument("--assets", type=Path, default=FOLDER)
     parser.add_argument("--row", nargs=2, metavar=("FILE", "LOADER"), help="measure one loader and print its seconds")
@@ -122,18 +108,11 @@ def main() -> None:
     if arguments.row:
         print(repeat(arguments.row[1], Path(arguments.row[0])))
         return
-    table = [
-        f"Milliseconds; {platform.machine()}, Python {platform.python_version()}, trimesh {trimesh.__version__}.",
-        "",
-        f"| file | triangles | {' | '.join(LOADERS)} |",
-        "|---|---|---|---|---|",
-    ]
+    about = f"{platform.machine()}, Python {platform.python_version()}, trimesh {trimesh.__version__}"
     with tempfile.TemporaryDirectory() as folder:
         paths = write_spheres(Path(folder)) + [arguments.assets / name for name in ASSETS]
-        table += [measure(path) for path in paths if path.exists()]
-    print("\n".join(table))
-    if arguments.write:
-        write_page("loading.md", "# Loading\n\n" + "\n".join(table) + "\n")
+        rows = table(("file", "triangles", *LOADERS), [measure(path) for path in paths if path.exists()])
+    publish("loading.md", f"# Loading\n\nMilliseconds; {about}.\n\n{rows}", write=arguments.write)
 
 
 if __name__ == "__main__":

@@ -12,10 +12,10 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
-from report import RESULTS, write_page
+from report import RESULTS, publish, table
 
 import voxrt
 from voxrt.octree import with_means
@@ -48,20 +48,6 @@ PICTURES = {
 COSTS = (("skull", SKULL, 11), ("gargo", GARGO, 10), ("gargo", GARGO, 12))
 
 
-class Table(NamedTuple):
-    """A title and rows of a table, the first one its heads."""
-
-    title: str
-    rows: list[tuple[str, ...]]
-
-    def text(self) -> str:
-        """Give it in Markdown."""
-        heads, *rows = self.rows
-        lines = ["| " + " | ".join(row) + " |" for row in (heads, *rows)]
-        lines.insert(1, "|---|" + "--:|" * (len(heads) - 1))
-        return f"## {self.title}\n\n" + "\n".join(lines) + "\n"
-
-
 def camera_from(rom: Rom, times: int) -> Camera:
     """Give the default camera, moved back along its look: so many times as far from the middle of the world."""
     camera = voxrt.aim_camera(rom, FAR_SIZE)
@@ -72,10 +58,10 @@ def camera_from(rom: Rom, times: int) -> Camera:
     return voxrt.aim_camera(rom, FAR_SIZE, position=place, look=camera.look)
 
 
-def pictures(times: int) -> Table:
-    """Compare pictures with and without level of detail with those of 16 samples."""
-    heads = ["asset", "off: SSIM, dB", *(f"{cell:g}: SSIM, dB" for cell in PICTURE_CELLS)]
-    rows = [tuple(heads)]
+def pictures(times: int) -> tuple[str, str]:
+    """Compare pictures with and without level of detail with those of 16 samples; give a title and a table."""
+    heads = ("asset", "off: SSIM, dB", *(f"{cell:g}: SSIM, dB" for cell in PICTURE_CELLS))
+    rows: list[tuple[str, ...]] = []
     better = dict.fromkeys(PICTURE_CELLS, 0)
     for name, asset in PICTURES.items():
         rom = with_means(rom_of(name, asset, DEPTH))
@@ -90,13 +76,13 @@ def pictures(times: int) -> Table:
         rows.append((name, *(f"{likeness:.4f}, {noise:.2f}" for likeness, noise in found)))
         print(*rows[-1], flush=True)
     rows.append(("both better", "", *map(str, better.values())))
-    return Table(f"Pictures from {DISTANCES[times]}", rows)
+    return f"Pictures from {DISTANCES[times]}", table(heads, rows, left=1)
 
 
-def costs(config: str) -> Table:
-    """Measure what far views cost the hardware."""
+def costs(config: str) -> tuple[str, str]:
+    """Measure what far views cost the hardware; give a title and a table."""
     heads = ("scene", "words per ray", "cycles per pixel", "L1 hits %", "lines per pixel", "wrong pixels")
-    rows = [heads]
+    rows = []
     for name, asset, depth in COSTS:
         rom = with_means(rom_of(name, asset, depth))
         camera = voxrt.aim_camera(rom, SIZE)
@@ -106,18 +92,14 @@ def costs(config: str) -> Table:
             assert cost.words_read is not None
             assert cost.cycles is not None
             assert cost.cache is not None
-            rows.append(
-                (
-                    f"{name} {depth}, {f'cells of {cell:g}' if cell else 'off'}",
-                    f"{cost.words_read / cost.rays:.2f}",
-                    f"{cost.cycles / cost.rays:.2f}",
-                    f"{100 * (1 - cost.cache.line_requests / cost.words_read):.1f}",
-                    f"{cost.cache.lines_read / cost.rays:.3f}",
-                    str(checked.wrong_pixels),
-                )
-            )
+            scene = f"{name} {depth}, {f'cells of {cell:g}' if cell else 'off'}"
+            words, cycles = f"{cost.words_read / cost.rays:.2f}", f"{cost.cycles / cost.rays:.2f}"
+            hits = f"{100 * (1 - cost.cache.line_requests / cost.words_read):.1f}"
+            lines = f"{cost.cache.lines_read / cost.rays:.3f}"
+            rows.append((scene, words, cycles, hits, lines, str(checked.wrong_pixels)))
             print(*rows[-1], flush=True)
-    return Table(f"Far views of {SIZE[0]}x{SIZE[1]}, {config}, latency 50, interval 3", rows)
+    title = f"Far views of {SIZE[0]}x{SIZE[1]}, {config}, latency 50, interval 3"
+    return title, table(heads, rows, left=1)
 
 
 def written() -> dict[str, str]:
@@ -128,7 +110,6 @@ def written() -> dict[str, str]:
 
 
 def main() -> None:
-    """Run it."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", choices=("pictures", "cost"))
     parser.add_argument("--config", default="cached16")
@@ -141,7 +122,7 @@ def main() -> None:
         tables += [pictures(times) for times in DISTANCES]
     if options.only != "pictures":
         tables.append(costs(options.config))
-    found = {table.title: table.text() for table in tables}
+    found = {title: f"## {title}\n\n{text}" for title, text in tables}
     if options.write and options.only:
         found = written() | found
     text = "# Level of detail\n\n`python bench/lod.py --write`. "
@@ -149,9 +130,7 @@ def main() -> None:
     text += f"Pictures have {FAR_SIZE[0]}x{FAR_SIZE[1]} pixels and depth {DEPTH}. "
     text += "They are compared with pictures of 16 samples per pixel.\n\n"
     text += "\n".join(found.values())
-    print(text)
-    if options.write:
-        write_page("lod.md", text)
+    publish("lod.md", text, write=options.write)
 
 
 if __name__ == "__main__":

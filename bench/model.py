@@ -13,13 +13,12 @@ from __future__ import annotations
 import os
 import platform
 import time
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from original import Original, level_camera
-from report import options_of, table, write_page
+from report import ROOT, options_of, publish, table
 
 import voxrt
 from voxrt.sim import SimulatorError, _model, render
@@ -28,33 +27,12 @@ if TYPE_CHECKING:
     from voxrt.octree import Rom
     from voxrt.sim import Camera
 
-HERE = Path(__file__).resolve().parent
-SCENE = HERE.parent / "examples" / "courtyard.glb"
+SCENE = ROOT / "examples" / "courtyard.glb"
 REPEATS = 7
 
 
-@dataclass(frozen=True)
-class Subject:
-    """A memory and a camera in it that all contestants can take."""
-
-    name: str
-    rom: Rom
-    camera: Camera
-
-
-def subject(rom: Rom, size: int) -> Subject:
-    """Give a memory the camera that all contestants can take."""
-    return Subject(f"{rom.name}, depth {rom.octree.depth}", rom, level_camera(rom, size))
-
-
-def original_seconds(program: Original, subject: Subject, size: int) -> float:
-    """Give the least seconds of a frame by the report's algorithm, on one core."""
-    return min(program.render(subject.rom, subject.camera, (size, size))[0] for _ in range(REPEATS))
-
-
-def model_seconds(subject: Subject, size: int, threads: int, instructions: str) -> float:
+def model_seconds(rom: Rom, camera: Camera, size: int, threads: int, instructions: str) -> float:
     """Give the least seconds of a frame by the model, its memory loaded before."""
-    rom, camera = subject.rom, subject.camera
     memory = _model.Memory(rom.octree.words, rom.octree.depth)
     palette = np.zeros((256, 3), np.uint8)
     palette[: len(rom.materials)] = [material.colour for material in rom.materials]
@@ -68,23 +46,25 @@ def model_seconds(subject: Subject, size: int, threads: int, instructions: str) 
     return min(times)
 
 
-def measure(subject: Subject, published: Original, bare: Original, size: int, clock: float) -> list[tuple[str, str]]:
-    """Give the rows of one subject's table."""
-    pixels = size * size
-    original = original_seconds(published, subject, size)
-    at_its_best = original_seconds(bare, subject, size)
+def measure(rom: Rom, published: Original, bare: Original, size: int, clock: float) -> list[tuple[str, str]]:
+    pixels, frame = size * size, (size, size)
+    camera = level_camera(rom, size)
+    original, at_its_best = (
+        min(program.render(rom, camera, frame)[0] for _ in range(REPEATS)) for program in (published, bare)
+    )
     rows = [
-        (f"**{subject.name}**", f"{size}x{size} pixels"),
+        (f"**{rom.name}, depth {rom.octree.depth}**", f"{size}x{size} pixels"),
         ("report's program, 1 core", nanoseconds(original, pixels)),
         ("its algorithm on plain arrays, 1 core", nanoseconds(at_its_best, pixels, original)),
     ]
     for instructions in _model.INSTRUCTION_SETS:
-        seconds = model_seconds(subject, size, 1, instructions)
+        seconds = model_seconds(rom, camera, size, 1, instructions)
         rows.append((f"model, 1 core, {instructions}", nanoseconds(seconds, pixels, original)))
     cores = os.cpu_count()
-    rows.append((f"model, {cores} cores", nanoseconds(model_seconds(subject, size, 0, ""), pixels, original)))
+    on_all = model_seconds(rom, camera, size, 0, "")
+    rows.append((f"model, {cores} cores", nanoseconds(on_all, pixels, original)))
     try:
-        cost = render(subject.rom, subject.camera, (size, size), engine="rtl").cost
+        cost = render(rom, camera, frame, engine="rtl").cost
     except SimulatorError as error:
         return [*rows, ("hardware, tiny", str(error))]
     hardware = cost.cycles / (clock * 1e6)
@@ -99,7 +79,6 @@ def nanoseconds(seconds: float, pixels: int, original: float | None = None) -> s
 
 
 def main() -> None:
-    """Measure and print."""
     parser = options_of(__doc__)
     parser.add_argument("memories", nargs="*", type=Path)
     parser.add_argument("--size", type=int, default=512)
@@ -110,11 +89,9 @@ def main() -> None:
     rows = [("machine", f"{platform.machine()}, {os.cpu_count()} cores")]
     with Original(as_published=True) as published, Original(as_published=False) as bare:
         for rom in roms:
-            rows += measure(subject(rom, options.size), published, bare, options.size, options.clock)
-    text = table(("what", "measured"), rows)
-    print(text, end="")
-    if options.write:
-        write_page("model.md", f"# The exact model, measured by bench/model.py\n\n{text}")
+            rows += measure(rom, published, bare, options.size, options.clock)
+    title = "# The exact model, measured by bench/model.py\n\n"
+    publish("model.md", title + table(("what", "measured"), rows), write=options.write)
 
 
 if __name__ == "__main__":

@@ -52,7 +52,6 @@ def colours_of(scene: Scene) -> NDArray[np.uint8]:
 
 
 def ours(colours: NDArray[np.uint8], count: int) -> NDArray[np.uint8]:
-    """Return the colours that stand for others, by voxrt."""
     palette, rows = quantize(colours, np.ones(len(colours)), count)
     return palette[rows]
 
@@ -70,7 +69,6 @@ def pillows(colours: NDArray[np.uint8], count: int) -> NDArray[np.uint8]:
 
 
 def measured(method: Callable[[], NDArray[np.uint8]], seen: NDArray[np.float64]) -> tuple[float, float]:
-    """Return the mean difference and the seconds of one quantizer."""
     start = perf_counter()
     found = method()
     seconds = perf_counter() - start
@@ -78,7 +76,6 @@ def measured(method: Callable[[], NDArray[np.uint8]], seen: NDArray[np.float64])
 
 
 def main() -> None:
-    """Print a table."""
     if not sys.argv[1:]:
         sys.exit(__doc__)
     print("| asset | colours | Pillow: CIEDE2000 | voxrt | Pillow: ms | voxrt |\n|---|--:|--:|--:|--:|--:|")

@@ -127,7 +127,6 @@ def _open3d_mesh(vertices: np.ndarray, triangles: np.ndarray, depth: int) -> tup
 
 
 def main() -> None:
-    """Measure and print."""
     tool, file, depth = sys.argv[1:]
     with np.load(file) as arrays:
         step = TOOLS[tool](arrays["vertices"], arrays["triangles"], int(depth))

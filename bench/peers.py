@@ -17,15 +17,14 @@ import subprocess
 import sys
 import tempfile
 import time
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from peer import MAKES, TOOLS
-from peers_run import Run
-from report import ROOT, machine, options_of, write_page
+from report import ROOT, machine, options_of, publish, table
 
 from voxelize import SKULL, displaced_sphere
 from voxrt.voxelize import load
@@ -36,11 +35,36 @@ if TYPE_CHECKING:
 PLOTS = ROOT / "docs" / "pictures" / "peers.svg"
 DEPTHS = (7, 8, 9, 10)
 OUR_DEPTHS = (*DEPTHS, 11, 12)
+COLOURS = {
+    "voxrt": "#d62728",
+    "trimesh": "#8c564b",
+    "Open3D surface": "#1f77b4",
+    "Open3D octree": "#17becf",
+    "Open3D columns": "#2ca02c",
+    "PyVista": "#9467bd",
+}
 NO_MEMORY = ("MemoryError", "bad_alloc", "Unable to allocate", "Cannot allocate memory", "out of memory")
 
 
+@dataclass(frozen=True)
+class Run:
+    """What one tool made of one mesh at one depth, or why it did not: medians of the runs."""
+
+    tool: str
+    mesh: str
+    depth: int
+    failure: str = ""
+    wall: float = 0.0
+    """Seconds of the whole process."""
+    step: float = 0.0
+    """Seconds from the mesh's arrays to the voxels."""
+    peak: float = 0.0
+    """Most resident memory, MB."""
+    voxels: int = 0
+    words: int = 0
+
+
 def meshes(folder: Path) -> dict[str, Path]:
-    """Write the meshes as arrays."""
     scenes = {"sphere-70k": displaced_sphere(133), "sphere-810k": displaced_sphere(451)}
     if SKULL.exists():
         scenes["skull"] = load(SKULL)
@@ -95,34 +119,60 @@ def measure(tool: str, mesh: str, file: Path, depth: int, options: argparse.Name
 
 def tables(runs: list[Run], options: argparse.Namespace) -> str:
     """Give a table a mesh: a tool a row, a depth a column."""
-    names = ("trimesh", "open3d", "pyvista", "vtk")
-    lines = [
-        f"{machine()}; "
-        + ", ".join(f"{name} {version(name)}" for name in names)
-        + f". Medians of {options.runs}: seconds of the whole process / of the step from arrays to voxels / peak memory"
-        + f", at most {options.seconds:g} s and {options.gigabytes:g} GB a run."
-    ]
-    for mesh in dict.fromkeys(run.mesh for run in runs):
-        lines += ["", f"## {mesh}", "", "| tool | makes | " + " | ".join(f"{2**depth}³" for depth in OUR_DEPTHS) + " |"]
-        lines.append("|---" * (2 + len(OUR_DEPTHS)) + "|")
+    tools = ", ".join(f"{name} {version(name)}" for name in ("trimesh", "open3d", "pyvista", "vtk"))
+    text = (
+        f"{machine()}; {tools}. Medians of {options.runs}: seconds of the whole process / of the step from arrays to "
+        f"voxels / peak memory, at most {options.seconds:g} s and {options.gigabytes:g} GB a run.\n"
+    )
+    sides = [f"{2**depth}³" for depth in OUR_DEPTHS]
+    ours = [run for run in runs if run.tool == "voxrt"]
+    names = list(dict.fromkeys(run.mesh for run in runs))
+    for mesh in names:
+        rows = []
         for tool in TOOLS:
             found = {run.depth: run for run in runs if (run.tool, run.mesh) == (tool, mesh)}
-            cells = [_cell(found[depth]) if depth in found else "-" for depth in OUR_DEPTHS]
-            lines.append(f"| {tool} | {MAKES[tool]} | {' | '.join(cells)} |")
-    lines += ["", "## Memory words of voxrt", "", "| mesh | " + " | ".join(f"{2**d}³" for d in OUR_DEPTHS) + " |"]
-    lines.append("|---" * (1 + len(OUR_DEPTHS)) + "|")
-    for mesh in dict.fromkeys(run.mesh for run in runs):
-        words = [f"{run.words:,}" for run in runs if (run.tool, run.mesh) == ("voxrt", mesh)]
-        lines.append(f"| {mesh} | {' | '.join(words)} |")
-    return "\n".join(lines) + "\n"
+            rows.append((tool, MAKES[tool], *(_cell(found[d]) if d in found else "-" for d in OUR_DEPTHS)))
+        text += f"\n## {mesh}\n\n{table(('tool', 'makes', *sides), rows)}"
+    words = [(mesh, *(f"{run.words:,}" for run in ours if run.mesh == mesh)) for mesh in names]
+    return text + f"\n## Memory words of voxrt\n\n{table(('mesh', *sides), words)}"
 
 
 def _cell(run: Run) -> str:
     return run.failure or f"{run.wall:.2f} / {run.step:.2f} / {run.peak:,.0f} MB"
 
 
+def plot(runs: list[Run], file: Path) -> None:
+    """Draw the runs on the first mesh, and the words of all meshes, as an SVG file: the same bytes for equal runs."""
+    import matplotlib as mpl  # noqa: PLC0415 - only for the plots
+    from matplotlib import pyplot as plt  # noqa: PLC0415
+
+    mpl.rcParams |= {"svg.hashsalt": "voxrt", "svg.fonttype": "none", "font.size": 9}
+    figure, (times, memories, words) = plt.subplots(1, 3, figsize=(11, 3.6), layout="constrained")
+    mesh = runs[0].mesh
+    for tool, colour in COLOURS.items():
+        drawn = [run for run in runs if (run.tool, run.mesh, run.failure) == (tool, mesh, "")]
+        sides = [2**run.depth for run in drawn]
+        width = 2.2 if tool == "voxrt" else 1.2
+        times.plot(sides, [run.step for run in drawn], "o-", color=colour, label=tool, linewidth=width, markersize=3)
+        memories.plot(sides, [run.peak for run in drawn], "o-", color=colour, linewidth=width, markersize=3)
+    for name, line in zip(dict.fromkeys(run.mesh for run in runs), ("-", "--", ":"), strict=False):
+        drawn = [run for run in runs if (run.tool, run.mesh, run.failure) == ("voxrt", name, "")]
+        sides = [2**run.depth for run in drawn]
+        style = {"marker": "o", "color": COLOURS["voxrt"], "markersize": 3}
+        words.plot(sides, [run.words for run in drawn], line, label=name, **style)
+    for axes, title in ((times, f"seconds, {mesh}"), (memories, f"peak memory in MB, {mesh}"), (words, "words, voxrt")):
+        axes.set_title(title)
+        axes.set_xscale("log", base=2)
+        axes.set_yscale("log")
+        axes.set_xlabel("voxels per side")
+        axes.grid(alpha=0.3)
+    times.legend(fontsize=7)
+    words.legend(fontsize=7)
+    figure.savefig(file, metadata={"Date": None})
+    plt.close(figure)
+
+
 def main() -> None:
-    """Run everything, print the tables, write them and the plots."""
     parser = options_of(__doc__)
     parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--seconds", type=float, default=90)
@@ -140,13 +190,10 @@ def main() -> None:
                     if runs[-1].failure:
                         break
     text = tables(runs, options)
-    print(text, end="")
+    publish("peers.md", "# Beside other voxelizers\n\n" + text, write=options.write)
     if options.json:
         options.json.write_text(json.dumps([asdict(run) for run in runs], indent=2) + "\n")
     if options.write:
-        from peers_plot import plot  # noqa: PLC0415 - Matplotlib is needed for this alone
-
-        write_page("peers.md", "# Beside other voxelizers\n\n" + text)
         plot(runs, PLOTS)
 
 

@@ -24,21 +24,26 @@ def options_of(documentation: str | None) -> argparse.ArgumentParser:
 
 
 def frame_size(text: str) -> tuple[int, int]:
-    """Return width and height, from ``640x480``."""
     width, height = (int(side) for side in text.split("x"))
     return width, height
 
 
 def machine() -> str:
-    """Return the machine, its cores and the version of Python."""
     return f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}"
 
 
-def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Return a Markdown table."""
-    return "".join(f"| {' | '.join(row)} |\n" for row in (head, ("---",) * len(head), *rows))
+def table(head: Sequence[str], rows: Iterable[Sequence[str]], left: int | None = None) -> str:
+    """Return a Markdown table; the columns after the first `left` ones are numbers, which stand at the right."""
+    rule = ["---" if left is None or column < left else "--:" for column in range(len(head))]
+    return "".join(f"| {' | '.join(row)} |\n" for row in (head, rule, *rows))
+
+
+def publish(name: str, page: str, *, write: bool) -> None:
+    """Print a page of ``bench/results``, and write it if so wanted."""
+    print(page, end="")
+    if write:
+        write_page(name, page)
 
 
 def write_page(name: str, page: str) -> None:
-    """Write a page of ``bench/results``."""
     (RESULTS / name).write_text(page, encoding="utf-8")

@@ -13,7 +13,7 @@ from statistics import median
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from report import ROOT, options_of, write_page
+from report import ROOT, frame_size, options_of, publish, table
 from rtl_scenes import scenes
 
 from voxrt.rtl.configurations import read_configurations
@@ -68,8 +68,7 @@ def bound_in_order(words: NDArray[np.float64], rays: int, lanes: int) -> float:
     return max(float((np.arange(len(words)) * rays + later).max()), float(len(words) * rays))
 
 
-def measure(scene: Scene, size: tuple[int, int], rounds: int) -> list[str]:
-    """Render a scene with every configuration and give the table's rows."""
+def measure(scene: Scene, size: tuple[int, int], rounds: int) -> list[list[str]]:
     rows = []
     pixels = size[0] * size[1]
     in_bands: dict[str, NDArray[np.float64]] = {}
@@ -89,36 +88,28 @@ def measure(scene: Scene, size: tuple[int, int], rounds: int) -> list[str]:
             if name not in in_bands:  # All configurations read the same words.
                 in_bands[name] = band_words(scene, size, config, shading)
             in_order = bound_in_order(in_bands[name], BAND * size[0], LANES[config]) / pixels
-            rows.append(
-                f"| {scene.name} | {config} | {name} | {LANES[config]} | {words:.2f} | {cycles:.3f} | {bound:.3f} "
-                f"| {cycles / bound:.3f} | {in_order:.3f} | {cycles / in_order:.3f} "
-                f"| {frame['words_read'] / frame['cycles'] / LANES[config]:.4f} "
-                f"| {frame['cycles'] / seconds / 1e6:.2f} | {pixels / seconds / 1e6:.2f} |"
-            )
+            ratios = (cycles, bound, cycles / bound, in_order, cycles / in_order)
+            row = [scene.name, config, name, str(LANES[config]), f"{words:.2f}", *(f"{ratio:.3f}" for ratio in ratios)]
+            row.append(f"{frame['words_read'] / frame['cycles'] / LANES[config]:.4f}")
+            row += [f"{count / seconds / 1e6:.2f}" for count in (frame["cycles"], pixels)]
+            rows.append(row)
     return rows
 
 
 def main() -> None:
-    """Measure and print."""
     parser = options_of(__doc__)
-    parser.add_argument("--size", nargs="+", default=["256x256", "640x480"])
+    parser.add_argument("--size", type=frame_size, nargs="+", default=[(256, 256), (640, 480)])
     parser.add_argument("--memories", type=Path, default=ROOT.parent / "shared" / "seed-memories")
     parser.add_argument("--rounds", type=int, default=1)
     options = parser.parse_args()
     heads = ["scene", "configuration", "frame", "lanes", "words per pixel", "cycles per pixel", "bound", "of the bound"]
     heads += ["bound in order", "of it"]
     heads += ["words per clock and lane", "million clocks/s simulated", "million pixels/s simulated"]
-    lines = [*NOTES, ""]
+    text = "\n".join(NOTES) + "\n"
     for size in options.size:
-        width, height = (int(side) for side in size.split("x"))
-        lines += [f"{size} pixels.", "", f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
-        for scene in scenes(options.memories, (width, height)):
-            lines += measure(scene, (width, height), options.rounds)
-        lines.append("")
-    text = "\n".join(lines)
-    print(text, end="")
-    if options.write:
-        write_page("rtl.md", text)
+        rows = [row for scene in scenes(options.memories, size) for row in measure(scene, size, options.rounds)]
+        text += f"\n{size[0]}x{size[1]} pixels.\n\n{table(heads, rows)}"
+    publish("rtl.md", text, write=options.write)
 
 
 if __name__ == "__main__":

@@ -33,7 +33,6 @@ def grid(side: int) -> NDArray[np.float64]:
 
 
 def terrain(depth: int) -> NDArray[np.uint8]:
-    """Make hills of a few waves."""
     side = 1 << depth
     x, y, z = grid(side)
     height = side / 3 + sum(
@@ -43,7 +42,6 @@ def terrain(depth: int) -> NDArray[np.uint8]:
 
 
 def sphere_and_boxes(depth: int) -> NDArray[np.uint8]:
-    """Make a sphere between boxes."""
     side = 1 << depth
     place = grid(side) / side
     voxels = np.where(((place - 0.55) ** 2).sum(axis=0) < 0.06, 1, 0).astype(np.uint8)
@@ -87,7 +85,6 @@ def published_house(folder: Path) -> NDArray[np.uint32]:
 
 
 def scenes(memories: Path, size: tuple[int, int]) -> list[Scene]:
-    """Make the benchmark's scenes."""
     found = []
     if (memories / "house.mem").exists():
         camera = np.array([[450 * 16, 600 * 16, 300 * 16], [0, 0, 90], [1, 0, 0], [0, 1, 0]], np.int32)

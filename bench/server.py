@@ -28,7 +28,6 @@ STEPS = 100
 
 
 async def measure(scene_file: Path, seconds: float) -> None:
-    """Print the results for one scene."""
     async with FrameServer(ModelDevice(), SceneLibrary(asset_reader()), ServerOptions()) as server:
         await server.session.renderer.load(load_scene(scene_file), lambda _stage, _done, _total: None)
         async with open_client(server.url) as client:
@@ -42,7 +41,6 @@ async def measure(scene_file: Path, seconds: float) -> None:
 
 
 async def count_frames(client: FrameClient, seconds: float) -> int:
-    """Count the frames that arrive."""
     await client.request("view", nonstop=True)
     await client.next_frame()
     end = time.perf_counter() + seconds

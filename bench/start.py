@@ -21,7 +21,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
+import trimesh
 from report import options_of, write_page
 
 import voxrt
@@ -46,14 +46,7 @@ def write_obj(path: Path) -> None:
 def write_ply(path: Path) -> None:
     """Write a closed mesh of 811,800 triangles, binary."""
     mesh = displaced_sphere(451).objects[0].mesh
-    rows = np.zeros(len(mesh.triangles), dtype=[("count", "u1"), ("corners", "<i4", 3)])
-    rows["count"], rows["corners"] = 3, mesh.triangles
-    axes = "".join(f"property float {axis}\n" for axis in "xyz")
-    header = (
-        f"ply\nformat binary_little_endian 1.0\nelement vertex {len(mesh.positions)}\n{axes}"
-        f"element face {len(rows)}\nproperty list uchar int vertex_indices\nend_header\n"
-    )
-    path.write_bytes(header.encode() + mesh.positions.astype("<f4").tobytes() + rows.tobytes())
+    trimesh.Trimesh(mesh.positions, mesh.triangles, process=False).export(path)
 
 
 def steps(ply: Path, runs: int) -> list[str]:
@@ -80,7 +73,6 @@ def steps(ply: Path, runs: int) -> list[str]:
 
 
 def run(command: tuple[str, ...], folder: Path) -> tuple[float, float, str]:
-    """Give the wall seconds of a process, its processor seconds and its output."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     start = time.perf_counter()
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
@@ -91,7 +83,6 @@ def run(command: tuple[str, ...], folder: Path) -> tuple[float, float, str]:
 
 
 def main() -> None:
-    """Measure and print."""
     parser = options_of(__doc__)
     parser.add_argument("--runs", type=int, default=7, help="runs per row")
     parser.add_argument("--depths", type=int, nargs="+", default=[10, 12], help="levels of the larger builds")

@@ -27,7 +27,7 @@ from statistics import median
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from report import ROOT, frame_size, options_of, write_page
+from report import ROOT, frame_size, options_of, publish, table
 from rtl_scenes import scenes
 
 if TYPE_CHECKING:
@@ -110,7 +110,7 @@ def render(way: Way, configuration: str, scene: Scene, size: tuple[int, int]) ->
     return Run(wall / way.frames, processor / way.frames, frozenset(made))
 
 
-def compare(ways: list[Way], scene: Scene, size: tuple[int, int], rounds: int) -> list[str]:
+def compare(ways: list[Way], scene: Scene, size: tuple[int, int], rounds: int) -> list[tuple[str, ...]]:
     """Let the ways, of which the first is what the others stand beside, render in turn; give the table's rows."""
     spawn = multiprocessing.get_context("spawn")
     processes = {way: ProcessPoolExecutor(1, mp_context=spawn) for way in ways}
@@ -130,20 +130,20 @@ def compare(ways: list[Way], scene: Scene, size: tuple[int, int], rounds: int) -
         for way, each in runs.items():
             paired = list(zip(base, each, strict=True))
             least = min(run.wall for run in each)
-            rows.append(
-                f"| {configuration} | {way.name} | {pixels / median(run.wall for run in each):.3f} "
-                f"| {pixels / least:.3f} "
-                f"| {median(one.wall / run.wall for one, run in paired):.2f} "
-                f"| {min(one.wall for one in base) / least:.2f} "
-                f"| {median(run.processor / one.processor for one, run in paired):.2f} |"
+            speeds = (pixels / median(run.wall for run in each), pixels / least)
+            ratios = (
+                median(one.wall / run.wall for one, run in paired),
+                min(one.wall for one in base) / least,
+                median(run.processor / one.processor for one, run in paired),
             )
+            cells = (*(f"{speed:.3f}" for speed in speeds), *(f"{ratio:.2f}" for ratio in ratios))
+            rows.append((configuration, way.name, *cells))
     for process in processes.values():
         process.shutdown()
     return rows
 
 
 def main() -> None:
-    """Build, measure and print."""
     parser = options_of(__doc__)
     parser.add_argument("--threads", type=int, default=2, help="beside one, default 2")
     parser.add_argument("--rounds", type=int, default=15)
@@ -162,19 +162,12 @@ def main() -> None:
     before = os.getloadavg()[0]
     rows = compare(ways, scene, (width, height), options.rounds)
     after = os.getloadavg()[0]
-    lines = [
-        f"{scene.name}, {width}x{height} pixels, {options.rounds} rounds on {os.cpu_count()} processors, which other",
-        f"work shares: {before:.1f} processes wanted them before, {after:.1f} after; these at a nice value of",
-        f"{os.getpriority(os.PRIO_PROCESS, 0)}. Speeds by the wall clock. Pictures and cycles are the same.",
-        "",
-        f"| {' | '.join(heads)} |",
-        "|---" * len(heads) + "|",
-        *rows,
-    ]
-    text = "\n".join(lines) + "\n"
-    print(text, end="")
-    if options.write:
-        write_page("threads.md", text)
+    about = (
+        f"{scene.name}, {width}x{height} pixels, {options.rounds} rounds on {os.cpu_count()} processors, which other\n"
+        f"work shares: {before:.1f} processes wanted them before, {after:.1f} after; these at a nice value of\n"
+        f"{os.getpriority(os.PRIO_PROCESS, 0)}. Speeds by the wall clock. Pictures and cycles are the same.\n\n"
+    )
+    publish("threads.md", about + table(heads, rows), write=options.write)
 
 
 if __name__ == "__main__":

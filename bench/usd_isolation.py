@@ -13,7 +13,7 @@ import sys
 import time
 from pathlib import Path
 
-from report import ROOT, options_of, write_page
+from report import ROOT, options_of, publish, table
 
 APART = "from voxrt.voxelize.formats.usd.isolated import read_isolated; read_isolated(path)"
 TOGETHER = """
@@ -32,33 +32,25 @@ def seconds(code: str, asset: Path) -> float:
 
 
 def main() -> None:
-    """Measure and print."""
     parser = options_of(__doc__)
     parser.add_argument("assets", nargs="*", type=Path, default=[ROOT / "examples" / "dog.usda"])
     parser.add_argument("--runs", type=int, default=15, help="runs per asset and way")
     options = parser.parse_args()
-    lines = [
-        "# USD in a process of its own",
-        "",
-        f"Made by `python bench/usd_isolation.py --write`: whole processes, {options.runs} runs each, in turns.",
-        "Seconds of the wall clock.",
-        "",
-        "| asset | apart: median, least | together: median, least | difference of the medians |",
-        "|---|---|---|---|",
-    ]
+    about = (
+        "# USD in a process of its own\n\n"
+        f"Made by `python bench/usd_isolation.py --write`: whole processes, {options.runs} runs each, in turns.\n"
+        "Seconds of the wall clock.\n\n"
+    )
+    rows = []
     for asset in options.assets:
         seconds(APART, asset), seconds(TOGETHER, asset)  # once for the caches of files
         pairs = [(seconds(APART, asset.resolve()), seconds(TOGETHER, asset.resolve())) for _ in range(options.runs)]
         apart, together = ([pair[way] for pair in pairs] for way in (0, 1))
-        medians = statistics.median(apart), statistics.median(together)
-        lines.append(
-            f"| {asset.name} | {medians[0]:.3f}, {min(apart):.3f} | {medians[1]:.3f}, {min(together):.3f} "
-            f"| {medians[0] - medians[1]:.3f} |"
-        )
-    report = "\n".join(lines) + "\n"
-    print(report, end="")
-    if options.write:
-        write_page("usd_isolation.md", report)
+        medians = [statistics.median(way) for way in (apart, together)]
+        cells = [f"{median:.3f}, {min(way):.3f}" for median, way in zip(medians, (apart, together), strict=True)]
+        rows.append((asset.name, *cells, f"{medians[0] - medians[1]:.3f}"))
+    head = ("asset", "apart: median, least", "together: median, least", "difference of the medians")
+    publish("usd_isolation.md", about + table(head, rows), write=options.write)
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ import time
 from pathlib import Path
 
 import numpy as np
-from report import ASSETS, machine, options_of, write_page
+from report import ASSETS, machine, options_of, publish, table
 
 from voxrt import octree
 from voxrt.voxelize import EMPTY, Material, Mesh, Scene, SceneObject, fit_grid, load, voxelize
@@ -84,7 +84,6 @@ def scene_of(name: str) -> Scene:
 
 
 def measure(name: str, depth: int, threads: int) -> dict[str, object]:
-    """Time one row in this process."""
     scene = scene_of(name)
     grid = fit_grid(scene, depth=depth)
     seconds = {"voxels": float("inf"), "processor": float("inf"), "octree": float("inf")}
@@ -124,31 +123,19 @@ def main() -> None:
     if arguments.row:
         print(json.dumps(measure(arguments.row[0], int(arguments.row[1]), arguments.threads)))
         return
-    lines = [
-        f"{machine()}; threads: {arguments.threads or 'all'}",
-        "",
-        "| scene | triangles | grid | solid voxels | to voxels | of all cores | to octree | words | peak memory |",
-        "|---|---|---|---|---|---|---|---|---|",
-    ]
+    head = ("scene", "triangles", "grid", "solid voxels", "to voxels", "of all cores", "to octree", "words")
+    rows = []
     for name, depth in ROWS:
         if (name == "skull" and not SKULL.exists()) or (name == "instances" and not INSTANCES.exists()):
             print(f"{name}: not below {ASSETS}", file=sys.stderr)
             continue
         command = [sys.executable, __file__, "--row", name, str(depth), "--threads", str(arguments.threads)]
         row = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
-        cells = (
-            row["scene"],
-            f"{row['triangles']:,}",
-            f"{row['side']}³",
-            f"{row['solid']:,}",
-            *(f"{row[stage] * 1e3:.0f} ms" for stage in ("voxels", "processor", "octree")),
-            f"{row['words']:,}",
-            f"{row['peak']} MB",
-        )
-        lines.append(f"| {' | '.join(cells)} |")
-    print("\n".join(lines))
-    if arguments.write:
-        write_page("voxelize.md", "# Voxelizer\n\n" + "\n".join(lines) + "\n")
+        seconds = [f"{row[stage] * 1e3:.0f} ms" for stage in ("voxels", "processor", "octree")]
+        cells = [row["scene"], f"{row['triangles']:,}", f"{row['side']}³", f"{row['solid']:,}", *seconds]
+        rows.append((*cells, f"{row['words']:,}", f"{row['peak']} MB"))
+    about = f"# Voxelizer\n\n{machine()}; threads: {arguments.threads or 'all'}\n\n"
+    publish("voxelize.md", about + table((*head, "peak memory"), rows), write=arguments.write)
 
 
 if __name__ == "__main__":

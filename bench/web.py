@@ -54,7 +54,6 @@ console.log(JSON.stringify({ build, frame }));
 
 
 def best(work: Callable[[], object]) -> float:
-    """Return the seconds of the quickest of some calls."""
     seconds = []
     for _ in range(REPEATS):
         start = process_time()
@@ -90,7 +89,6 @@ def in_node(path: Path, depth: int, rom: voxrt.Rom) -> tuple[float, float]:
 
 
 def main() -> None:
-    """Print a table."""
     if not SITE.exists():
         sys.exit("build/site is not here: make site")
     print("| scene | build native | wasm | ratio | frame native | wasm | ratio |\n|---|---|---|---|---|---|---|")

@@ -140,7 +140,6 @@ The video part of the report, HDMI and VDMA, is what Vivado made of it (table 9)
 
 
 def area(cells: dict[str, Any]) -> Area:
-    """Count what a netlist takes."""
     counted = Counter(cell["type"] for cell in cells.values())
     logic = sum(count for cell, count in counted.items() if is_logic(cell))
     memory = sum(MEMORY_LUTS[cell] * count for cell, count in counted.items() if cell in MEMORY_LUTS)
@@ -155,7 +154,6 @@ def area(cells: dict[str, Any]) -> Area:
 
 
 def row(name: str, parameters: dict[str, int], area: Area) -> str:
-    """Give a row of the table."""
     words = 8 * 2 ** parameters["BlockBits"]
     memory = "" if area.memory_luts is None else f"{area.memory_luts:,}"
     return (
@@ -171,15 +169,14 @@ def table(rows: dict[str, str]) -> str:
     return HEAD + "".join(rows[name] + "\n" for name in names if name in rows)
 
 
-def written_rows() -> dict[str, str]:
-    """Give the rows of the written table, by their first cell."""
-    lines = RESULTS.read_text().splitlines() if RESULTS.exists() else []
+def written_rows(page: Path) -> dict[str, str]:
+    """Give the rows of a written table, by their first cell."""
+    lines = page.read_text().splitlines() if page.exists() else []
     rows = [line for line in lines if line.startswith("| ")]
     return {line.split("|")[1].strip(): line for line in rows[1:]}
 
 
 def main() -> None:
-    """Estimate and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*")
     parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
@@ -203,7 +200,7 @@ def main() -> None:
     print(table(rows), end="")
     if options.write:
         RESULTS.parent.mkdir(exist_ok=True)
-        RESULTS.write_text(table(written_rows() | rows if options.names else rows))
+        RESULTS.write_text(table(written_rows(RESULTS) | rows if options.names else rows))
 
 
 if __name__ == "__main__":

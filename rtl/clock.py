@@ -14,7 +14,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from area import ROOT, work_folder
+from area import ROOT, work_folder, written_rows
 from configurations import read_configurations
 
 from voxrt.board.designs import build
@@ -67,20 +67,12 @@ def table_row(placed: list[dict[str, Any]]) -> str:
     )
 
 
-def written_rows() -> dict[str, str]:
-    """Give the rows of the written table, by their first cell."""
-    lines = RESULTS.read_text().splitlines() if RESULTS.exists() else []
-    rows = [line for line in lines if line.startswith("| ")]
-    return {line.split("|")[1].strip(): line for line in rows[1:]}
-
-
 def table(rows: dict[str, str]) -> str:
     """Give the table of these rows, in the order of the designs."""
     return HEAD + "".join(rows[name] + "\n" for name in designs() if name in rows)
 
 
 def main() -> None:
-    """Place, route and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     known = designs()
     parser.add_argument("names", nargs="*", help=f"designs; all: {', '.join(known)}")
@@ -95,7 +87,7 @@ def main() -> None:
         print(rows[name], file=sys.stderr)
     print(table(rows), end="")
     if options.write:
-        RESULTS.write_text(table(written_rows() | rows if options.names else rows))
+        RESULTS.write_text(table(written_rows(RESULTS) | rows if options.names else rows))
 
 
 if __name__ == "__main__":

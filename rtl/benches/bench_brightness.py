@@ -68,12 +68,10 @@ def mirrored_at(dut):
 
 
 def of_face(flat, faces, face, upper):
-    """Give the brightness of a face."""
     return Fraction(1) if flat else Fraction(faces[3 * upper + face], 255)
 
 
 def seen(dut):
-    """Read a pixel as `some_pixel` gives it."""
     number = dut.brightness_o.value.to_unsigned()
     sums, number = number % (1 << 3 * SUM), number >> 3 * SUM
     whole, number = number % (1 << 42), number >> 42
@@ -85,7 +83,6 @@ def seen(dut):
 
 
 def begin(dut):
-    """Set a frame's light; give what makes its pixels."""
     side = 1 << random.randint(1, DEPTH)
     reach = random.choice([16 * side, 1 << 18])
     light = [random.randint(-reach, reach) for _ in range(3)]
@@ -100,7 +97,6 @@ def begin(dut):
 @cocotb.test()
 @cocotb.parametrize(**PACES)
 async def fractions(dut, sending, taking):
-    """Lights near and far, all kinds of pixels."""
     await start(dut, valid_i=0, ready_i=0)
     for _ in range(15):
         make = begin(dut)
@@ -111,7 +107,6 @@ async def fractions(dut, sending, taking):
 
 @cocotb.test()
 async def reset_at_any_clock(dut):
-    """Drop all pixels under way."""
     await start(dut, valid_i=0, ready_i=0)
     for _ in range(10):
         make = begin(dut)

@@ -14,15 +14,12 @@ BASE, SIZE = 0x3000_0020, (13, 19)
 
 
 class CachedCore(Core):
-    """The core, and its external memory."""
-
     def __init__(self, dut):
         super().__init__(dut)
         chance = random.Random(random.randrange(1 << 30))
         self.bus = AxiMemory([PinPort(dut, f"m_axi{port}") for port in range(2)], chance, BASE)
 
     async def begin(self, voxels):
-        """Start, with a scene and a camera."""
         self.bus.words = words_of(voxels).tolist()
         cocotb.start_soon(self.serve())
         await self.start()
@@ -30,7 +27,6 @@ class CachedCore(Core):
         await self.set_frame(CAMERA, *SIZE, 3)
 
     async def serve(self):
-        """Answer the core's reads."""
         while True:
             self.bus.drive()
             await ReadOnly()
@@ -39,14 +35,12 @@ class CachedCore(Core):
             await RisingEdge(self.dut.clk_i)
 
     async def trace(self):
-        """Trace a frame; give its picture."""
         await self.write("control", start=1)
         await self.wait()
         return self.picture(*SIZE)
 
 
 def seen(voxels):
-    """Give what CAMERA sees."""
     return render(voxels, CAMERA, *SIZE, COLOURS)[0]
 
 

@@ -31,11 +31,9 @@ class Memory:
         self.answers = []
 
     def fill(self):
-        """Write the external memory: word 0 and all blocks."""
         self.bus.words = [some_word() for _ in range(1 + 8 * BLOCKS)]
 
     async def begin(self):
-        """Start the clock and reset all."""
         await start(self.dut, read_i=0, start_i=0, flush_i=0, base_i=BASE, bus_rst_ni=0)
         self.dut.bus_rst_ni.value = 1
         self.dut.rst_ni.value = 1
@@ -101,7 +99,6 @@ class Memory:
         return got
 
     async def drain(self, limit=40000, *, check=True):
-        """Let all rays have their words."""
         for _ in range(limit // 60):
             if all(place is None for lane in self.requests for place in lane):
                 return

@@ -145,7 +145,6 @@ async def scenes_are_swapped_by_their_roots_while_frames_go_on(dut):
 
 @cocotb.test()
 async def a_camera_written_during_a_frame_shows_in_the_next(dut):
-    """No torn frame."""
     core = Core(dut)
     await core.start()
     voxels = scene(5)

@@ -20,7 +20,6 @@ def some_division():
 @cocotb.test()
 @cocotb.parametrize(sending=["always", "random"])
 async def quotients(dut, sending):
-    """One a clock, or with holes between."""
     cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start(start_high=False))
     drive(dut, valid_i=0)
     await RisingEdge(dut.clk_i)

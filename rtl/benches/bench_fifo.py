@@ -13,7 +13,6 @@ DEPTH = 16
 @cocotb.test()
 @cocotb.parametrize(**PACES)
 async def order(dut, sending, taking):
-    """Bytes in, bytes out."""
     await start(dut, valid_i=0, ready_i=0)
     items = list(randbytes(300))
     taken = await exchange(dut, [{"data_i": item} for item in items], lambda: int(dut.data_o.value), sending, taking)
@@ -43,7 +42,6 @@ async def every_clock_as_a_queue(dut):
 
 @cocotb.test()
 async def reset(dut):
-    """Nothing of before the reset comes after it."""
     await start(dut, valid_i=0, ready_i=0)
     for _ in range(20):
         items = list(randbytes(40))

@@ -29,14 +29,12 @@ async def run(dut, clocks, likely):
 @cocotb.test()
 @cocotb.parametrize(likely=[1, 2, 3])
 async def rows(dut, likely):
-    """Few are allocated, or nearly all."""
     await start(dut, allocate_i=0, free_i=0)
     await run(dut, 1500, likely)
 
 
 @cocotb.test()
 async def reset_at_any_clock(dut):
-    """All rows are free after it."""
     await start(dut, allocate_i=0, free_i=0)
     for _ in range(30):
         await run(dut, random.randrange(1, 150), 3)

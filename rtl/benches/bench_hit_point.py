@@ -78,7 +78,6 @@ class Ring:
         self.wanted, self.answers = [], 0
 
     async def run(self, clocks, *, hit=True):
-        """Go on for so many clocks."""
         dut = self.dut
         for _ in range(clocks):
             coming = some_hit(self.depth) if hit and next(self.hits) else None
@@ -109,7 +108,6 @@ QUIET = {"hit3_i": 0, "takes9_i": 0, "ready_i": 0}
 @cocotb.test()
 @cocotb.parametrize(hitting=["always", "random"], taking=["always", "random"])
 async def hit_points(dut, hitting, taking):
-    """Rays that hit as fast as they may, hit points that wait."""
     await start(dut, **QUIET)
     for _ in range(10):
         ring = Ring(dut, hitting, taking)
@@ -121,7 +119,6 @@ async def hit_points(dut, hitting, taking):
 
 @cocotb.test()
 async def reset_at_any_clock(dut):
-    """Drop what is there; the places are free."""
     await start(dut, **QUIET)
     for _ in range(60):
         ring = Ring(dut, "random", "random")

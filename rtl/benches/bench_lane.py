@@ -66,7 +66,6 @@ class Surroundings:
         self.errors = 0
 
     async def run(self, sending, taking):
-        """Serve for ever."""
         dut = self.dut
         sends, allocatable, acknowledges = pace(sending), pace(taking), pace(taking)
         while True:
@@ -108,14 +107,12 @@ class Surroundings:
             waiting.append(inputs(ray, row, tag, shadow=waiting is self.shadow_rays))
 
     def release(self):
-        """Take rows back."""
         freed = ROW_FREE.unpack(self.dut.row_free_o)
         if freed["valid"]:
             assert freed["row"] not in self.free_rows, "freed twice"
             self.free_rows.append(freed["row"])
 
     def complete(self):
-        """Keep what comes for the reorder buffer."""
         result = RESULT.unpack(self.dut.result_o)
         tag = result["tag"]
         if result["store"]:
@@ -185,12 +182,10 @@ class Surroundings:
         return tuple(floor(channel * part + Fraction(1, 2)) for channel in colour)
 
     def of_face(self, face, mirrored):
-        """Give the brightness of a face."""
         return Fraction(1) if self.shader.flat else Fraction(self.shader.faces[2 * face + (mirrored >> face & 1)], 255)
 
 
 def hit_point(stored):
-    """Give the hit point of a pixel that is lit, and the mirrored axes."""
     detail = stored >> 10
     place = [detail >> PLACE * axis & (1 << PLACE) - 1 for axis in range(3)]
     return place, detail >> 3 * PLACE & 7
@@ -205,7 +200,6 @@ def some_world(leaves):
 
 
 def some_place():
-    """Make a position in the world or around it, on planes among others."""
     if random.random() < 0.5:
         return [random.choice([16 * random.randint(0, SIDE), random.randint(0, 16 * SIDE)]) for _ in range(3)]
     return [random.choice([16 * random.randint(-4, 12), random.randint(-200, 300)]) for _ in range(3)]
@@ -237,7 +231,6 @@ async def some_shader(dut):
 
 
 def set_light(dut, shader, light):
-    """Set where the light is, among the planes, and how bright it is in shadow."""
     shader.light, shader.ambient = light, random.choice([0, random.randrange(100)])
     places = [*light, *(16 * SIDE - place for place in light)]
     occluder = [sum(16 * plane < place for plane in range(SIDE)) for place in places]
@@ -246,7 +239,6 @@ def set_light(dut, shader, light):
 
 
 async def frame(dut, count, sending, taking):
-    """Trace rays from one position, and compare."""
     shader = await some_shader(dut)
     voxels = some_world(int(dut.Light.value) or int(dut.Mirrors.value))
     position = some_place()
@@ -255,7 +247,6 @@ async def frame(dut, count, sending, taking):
 
 
 async def trace(dut, scene, sending, taking, **hurry):
-    """Trace all rays of a scene, and compare."""
     voxels, shader, position, directions = scene
     words = words_of(voxels)
     rays = [ray_of(position, direction, SIDE) for direction in directions]
@@ -287,14 +278,12 @@ async def trace(dut, scene, sending, taking, **hurry):
 
 
 async def begin(dut):
-    """Start with nothing to do."""
     await start(dut, hit_point_ready_i=0, **NOTHING)
 
 
 @cocotb.test()
 @cocotb.parametrize(**PACES)
 async def pixels(dut, sending, taking):
-    """Random worlds and troublesome rays; words that do not come, reorder buffers that are full."""
     await begin(dut)
     for _ in range(8):
         await frame(dut, 60, sending, taking)
@@ -317,7 +306,6 @@ async def all_slots_ask_for_a_shadow_ray(dut):
 
 @cocotb.test()
 async def reset_at_any_clock(dut):
-    """Drop all rays."""
     await begin(dut)
     for _ in range(8):
         running = cocotb.start_soon(frame(dut, 60, "random", "random"))

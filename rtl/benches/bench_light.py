@@ -23,7 +23,6 @@ class Lanes:
         self.credits = [QUEUE] * LANES
 
     async def run(self, clocks, *, ask=True):
-        """Go on for so many clocks."""
         dut, side, light = self.dut, self.side, self.light
         for _ in range(clocks):
             claims = [ask and self.credits[lane] > 0 and next(self.asks) for lane in range(LANES)]
@@ -57,7 +56,6 @@ class Lanes:
                 self.waiting[lane] += 1
 
     def frame(self):
-        """Set another world and light."""
         self.side = 1 << random.randint(1, DEPTH)
         reach = random.choice([16 * self.side, (1 << 20) - 1])
         self.light = [random.choice([0, 16 * random.randint(-2, 70), random.randint(-reach, reach)]) for _ in range(3)]
@@ -78,7 +76,6 @@ class Lanes:
 @cocotb.test()
 @cocotb.parametrize(asking=["always", "random"], starting=["always", "random"])
 async def shadow_rays(dut, asking, starting):
-    """Lanes that ask as fast as they may, lanes that start late."""
     await start(dut, hit_point_claim_i=0, hit_point_valid_i=0, issued_i=0)
     lanes = Lanes(dut, asking, starting)
     for _ in range(10):
@@ -93,7 +90,6 @@ async def shadow_rays(dut, asking, starting):
 
 @cocotb.test()
 async def reset_at_any_clock(dut):
-    """Drop what is under way; all credits are back."""
     await start(dut, hit_point_claim_i=0, hit_point_valid_i=0, issued_i=0)
     for _ in range(10):
         lanes = Lanes(dut, "random", "random")

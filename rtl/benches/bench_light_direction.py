@@ -33,7 +33,6 @@ def some_light(side):
 @cocotb.test()
 @cocotb.parametrize(enabled=["always", "random"])
 async def exact(dut, enabled):
-    """Many worlds and lights; a hit point for each clock that counts."""
     drive(dut, enable_i=0)
     cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start(start_high=False))
     await RisingEdge(dut.clk_i)

@@ -10,7 +10,6 @@ LANES = 5
 
 
 async def lanes(dut, pixels, kind):
-    """Offer each lane's pixels, the lane being there or not."""
     waiting = [pixels[lane::LANES] for lane in range(LANES)]
     there = pace(kind)
     offered = [False] * LANES

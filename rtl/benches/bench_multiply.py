@@ -11,7 +11,6 @@ LATENCY = 2
 
 
 def some_number(bits):
-    """Make a number: extremes, single bits, runs of ones, any."""
     size = random.randint(0, bits)
     largest = (1 << bits) - 1
     return random.choice([0, 1, largest, largest >> 1, (1 << size) - 1, 1 << size & largest, random.getrandbits(bits)])
@@ -19,7 +18,6 @@ def some_number(bits):
 
 @cocotb.test()
 async def products(dut):
-    """One a clock."""
     cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start(start_high=False))
     await RisingEdge(dut.clk_i)
     on_the_way = [None] * LATENCY

@@ -39,8 +39,6 @@ def encoded(word):
 
 
 class Memory:
-    """The memory and its model."""
-
     def __init__(self, dut):
         self.dut = dut
         self.lanes = len(dut.read_i)
@@ -48,12 +46,10 @@ class Memory:
         self.words = {}
 
     async def begin(self):
-        """Reset and fill."""
         await start(self.dut, access_i=0, access_write_i=0, access_address_i=0, read_i=0)
         await self.write(range(WORDS))
 
     async def write(self, addresses):
-        """Write words, one a clock."""
         for address in addresses:
             word = some_word()
             drive(self.dut, access_i=1, access_write_i=1, access_address_i=address, access_word_i=word)

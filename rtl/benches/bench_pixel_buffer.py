@@ -31,19 +31,16 @@ async def complete(dut, pixels, kind, disorder):
 
 
 def seen(dut):
-    """Give what is offered."""
     return int(dut.pixel_o.value), int(dut.lit_o.value)
 
 
 def some(count):
-    """Make pixels."""
     return [(randrange(1024), randrange(2)) for _ in range(count)]
 
 
 @cocotb.test()
 @cocotb.parametrize(**PACES, disorder=[0, 7])
 async def order(dut, sending, taking, disorder):
-    """Each entry many times."""
     await start(dut, allocate_i=0, complete_i=0, store_i=0, ready_i=0)
     await ClockCycles(dut.clk_i, 20)
     pixels = some(200)
@@ -56,7 +53,6 @@ async def order(dut, sending, taking, disorder):
 
 @cocotb.test()
 async def reset_at_any_clock(dut):
-    """No pixel of before the reset shows up after it."""
     await start(dut, allocate_i=0, complete_i=0, store_i=0, ready_i=0)
     await ClockCycles(dut.clk_i, 20)
     for _ in range(20):

@@ -44,7 +44,6 @@ async def lines_of(sink, count):
 @cocotb.test()
 @cocotb.parametrize(**PACES)
 async def bytes_in_order(dut, sending, taking):
-    """Lines of all widths."""
     await start(dut, valid_i=0)
     sink = sink_of(dut, taking)
     for width in range(1, 14):

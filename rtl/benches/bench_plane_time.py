@@ -12,14 +12,12 @@ LATENCY = 3
 
 
 def some_distance(bits):
-    """Make a signed number, the least and the largest among them."""
     limit = 1 << bits - 1
     return random.choice([-limit, limit - 1, -1, 0, some_number(bits) - limit, -some_number(bits - 1)])
 
 
 @cocotb.test()
 async def times(dut):
-    """One a clock."""
     cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start(start_high=False))
     await RisingEdge(dut.clk_i)
     modulus = 1 << len(dut.time_o)

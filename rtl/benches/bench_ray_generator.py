@@ -6,7 +6,6 @@ from streams import PACES, start
 
 
 def seen(dut):
-    """Read a direction and its marks."""
     direction = tuple(value.to_signed() for value in dut.direction_o.value)
     return direction, int(dut.first_o.value), int(dut.line_end_o.value), int(dut.last_o.value)
 
@@ -14,7 +13,6 @@ def seen(dut):
 @cocotb.test()
 @cocotb.parametrize(taking=PACES["taking"])
 async def directions(dut, taking):
-    """Frames of all shapes, one after another."""
     await start(dut, raster_i=0, ready_i=0)
     for _ in range(30):
         frame = some_frame()
@@ -23,7 +21,6 @@ async def directions(dut, taking):
 
 @cocotb.test()
 async def reset_at_any_clock(dut):
-    """Begin again after it."""
     await start(dut, raster_i=0, ready_i=0)
     for _ in range(20):
         frame = some_frame()

@@ -33,14 +33,12 @@ async def run(dut, clocks, likely):
 @cocotb.test()
 @cocotb.parametrize(likely=[1, 2, 3, 4])
 async def every_clock_as_two_queues(dut, likely):
-    """Few come, more come, none goes."""
     await start(dut, valid_i=0, ready_i=0)
     await run(dut, 600, likely)
 
 
 @cocotb.test()
 async def reset_at_any_clock(dut):
-    """Both queues are empty after it."""
     await start(dut, valid_i=0, ready_i=0)
     for _ in range(20):
         await run(dut, randrange(1, 60), 3)

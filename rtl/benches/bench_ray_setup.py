@@ -33,13 +33,11 @@ def some_shadow(side):
 
 
 def world(position, depth):
-    """Give the world of a camera at a position."""
     mirrored = [(16 << depth) - place for place in position]
     return WORLD.pack(origin=position, mirrored_origin=mirrored, depth=depth, side=1 << depth)
 
 
 def seen(dut):
-    """Read the outputs."""
     values = RAY.unpack(dut.ray_o)
     values["origin"] = tuple(signed(value, DISTANCE) for value in values["origin"])
     values["weights"] = tuple(unpacked_array(dut.weights_o.value.to_unsigned(), 3, WEIGHT))
@@ -49,7 +47,6 @@ def seen(dut):
 
 
 async def collect(dut, into):
-    """Collect rays."""
     while True:
         await RisingEdge(dut.clk_i)
         if int(dut.valid_o.value):
@@ -111,7 +108,6 @@ async def frame(dut, count, kind):
 @cocotb.test()
 @cocotb.parametrize(kind=["always", "random"])
 async def rays_as_in_whole_numbers(dut, kind):
-    """Many cameras and worlds."""
     await start(dut, valid_i=0)
     for _ in range(30):
         await frame(dut, 60, kind)
@@ -153,7 +149,6 @@ async def a_component_of_2_to_20_or_more_is_flagged(dut):
 
 @cocotb.test()
 async def reset_at_any_clock(dut):
-    """Drop all rays under way."""
     await start(dut, valid_i=0)
     for _ in range(5):
         sender = cocotb.start_soon(frame(dut, 40, "random"))

@@ -37,7 +37,6 @@ class Ring:
         return {material: row}
 
     async def fill_table(self):
-        """Write all rows."""
         for material in range(256):
             written = self.write_table(material, some_entry())
             await self.clock(0, {}, busy=False)
@@ -87,7 +86,6 @@ class Ring:
 
 
 async def prepare(dut):
-    """Start the clock, and fill the table."""
     drive(dut, material_write_i=0, hit_i=0, issues_i=0)
     cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start(start_high=False))
     await RisingEdge(dut.clk_i)
@@ -116,7 +114,6 @@ async def the_table_is_written(dut, writing):
 
 @cocotb.test()
 async def brightest_mirrors(dut):
-    """Reach the largest sums there are."""
     ring = await prepare(dut)
     for material in range(256):
         written = ring.write_table(material, (True, (255, 255, 255)))

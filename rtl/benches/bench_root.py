@@ -76,7 +76,6 @@ async def find(dut, memory, address):
 
 
 async def begin(dut, refuses):
-    """Start beside a memory of random words."""
     await start(dut, start_i=0, address_i=0, first_word_i=0, ack_i=0, word_i=0)
     return Memory(dut, refuses)
 
@@ -84,7 +83,6 @@ async def begin(dut, refuses):
 @cocotb.test()
 @cocotb.parametrize(where=list(ADDRESSES), **REFUSALS)
 async def roots(dut, where, refuses):
-    """One after another, some of them without a clock between."""
     memory = await begin(dut, refuses)
     for _ in range(60):
         await find(dut, memory, ADDRESSES[where]())
@@ -92,7 +90,6 @@ async def roots(dut, where, refuses):
 
 @cocotb.test()
 async def every_address(dut):
-    """All words of the memory, and those around its end."""
     memory = await begin(dut, "at_random")
     for address in range(WORDS + 8):
         await find(dut, memory, address)

@@ -16,12 +16,10 @@ def some_registers():
 
 
 def line_step(dut):
-    """Read the three components."""
     return [signed(value, SCAN) for value in unpacked_array(dut.line_step_o.value.to_unsigned(), 3, SCAN)]
 
 
 async def check(dut):
-    """Scan once."""
     look, right, up = some_registers()
     width, height = (random.choice([0, 2047, random.randrange(2048)]) for _ in range(2))
     drive(dut, **{f"{name}_i": packed_array(row, 16) for name, row in (("look", look), ("right", right), ("up", up))})
@@ -39,7 +37,6 @@ async def check(dut):
 
 @cocotb.test()
 async def corners(dut):
-    """Many frames, with resets between and within."""
     await start(dut, start_i=0)
     for _ in range(60):
         await check(dut)

@@ -85,12 +85,10 @@ def some_pixels(frame, colours, flat, faces, kinds):
 
 
 def seen(dut):
-    """Read a shaded pixel."""
     return tuple(SHADED_PIXEL.unpack(dut.pixel_o).values())[::-1]
 
 
 async def prepare(dut):
-    """Start, and fill the material table; give it."""
     await start(dut, raster_i=0, valid_i=0, pixel_ready_i=0, material_write_i=0, shading_i=0)
     colours = [tuple(random.choice([0, 255, random.randrange(256)]) for _ in range(3)) for _ in range(256)]
     for material, (red, green, blue) in enumerate(colours):
@@ -103,7 +101,6 @@ async def prepare(dut):
 @cocotb.test()
 @cocotb.parametrize(**PACES)
 async def colours(dut, sending, taking):
-    """Frames of all kinds of pixels."""
     table = await prepare(dut)
     for _ in range(15):
         flat, faces = some_shading(dut)

@@ -11,7 +11,6 @@ LANES = 16
 
 
 async def frame(dut, width, height, sending, taking):
-    """Send a frame and compare."""
     drive(dut, start_i=1, width_i=width, height_i=height)
     await RisingEdge(dut.clk_i)
     drive(dut, start_i=0)

@@ -9,12 +9,10 @@ LANES = 1
 
 
 def seen(dut):
-    """Read a direction."""
     return tuple(value.to_signed() for value in dut.direction_o.value)
 
 
 def expected(frame):
-    """Give all directions of a frame."""
     return [direction_at(frame, line, column) for line, column in in_strips(LANES, *frame[3:])]
 
 
@@ -39,7 +37,6 @@ async def wide_frames(dut, width):
 
 @cocotb.test()
 async def reset_at_any_clock(dut):
-    """Begin again after it."""
     await start(dut, raster_i=0, ready_i=0)
     for _ in range(20):
         frame = some_frame(highest=20)

@@ -24,13 +24,11 @@ def show(title, rows):
 
 
 def write(lines):
-    """Append lines to what is written."""
     with WRITTEN.open("a") as file:
         file.write("\n".join(lines) + "\n\n")
 
 
 def number(signal, digits=8):
-    """Read a signal as hexadecimal digits."""
     return f"{int(signal.value):0{digits}X}"
 
 

@@ -15,7 +15,6 @@ CAMERA = np.array([[-60, 150, -70], [90, -70, 100], [9, 0, -9], [1, 9, 2]], np.i
 
 
 def scene(seed):
-    """Make a world of 8 voxels per side."""
     return np.random.default_rng(seed).choice([0, 0, 0, 0, 1, 2, 255], (8, 8, 8)).astype(np.uint8)
 
 
@@ -67,7 +66,6 @@ class Core:
     dropping = False
 
     async def write(self, name, **fields):
-        """Write a register by its fields."""
         address, places = REGISTERS[name]
         value = 0
         for field, number in fields.items():
@@ -76,7 +74,6 @@ class Core:
         await self.axi.write_dword(address, value)
 
     async def read(self, name, field):
-        """Read a field."""
         address, places = REGISTERS[name]
         low, width = places[field]
         return await self.axi.read_dword(address) >> low & ((1 << width) - 1)
@@ -103,7 +100,6 @@ class Core:
                 await self.write(f"{name}[{axis}]", value=row[axis])
 
     async def set_light(self, position):
-        """Write the light's position."""
         for axis in range(3):
             await self.write(f"light[{axis}]", value=position[axis])
 
@@ -120,7 +116,6 @@ class Core:
             await self.axi.write_dword(MATERIALS + 4 * material, entry)
 
     async def wait(self):
-        """Wait for a frame to end."""
         for _ in range(20000):
             if await self.read("status", "frame_done"):
                 await self.write("status", frame_done=1)

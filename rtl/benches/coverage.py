@@ -169,7 +169,6 @@ def lines_covered() -> list[str]:
 
 
 def main() -> int:
-    """Run, report; give the exit code."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     either = parser.add_mutually_exclusive_group()
     either.add_argument("--quick", action="store_true", help="leave out the builds that repeat the benches of others")

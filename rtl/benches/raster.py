@@ -31,7 +31,6 @@ async def begin(dut, frame):
 
 
 def direction_at(frame, line, column):
-    """Give the direction of a pixel."""
     corner, right, down, _, _ = frame
     return tuple(c + column * r + line * s for c, r, s in zip(corner, right, down, strict=True))
 

@@ -22,7 +22,6 @@ class Ray(NamedTuple):
 
 
 def bits(flags):
-    """Give flags of the axes as a number."""
     return sum(bool(flag) << axis for axis, flag in enumerate(flags))
 
 

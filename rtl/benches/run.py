@@ -195,7 +195,6 @@ def prepare() -> None:
 
 
 def main() -> None:
-    """Run all that are asked for."""
     names = sys.argv[1:] or list(BUILDS)
     if unknown := [name for name in names if name not in BUILDS]:
         sys.exit(f"there is no build {', '.join(unknown)}; there are {', '.join(BUILDS)}")

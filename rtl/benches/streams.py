@@ -22,14 +22,12 @@ def drive(dut, **values):
 
 
 async def reset(dut, clocks=3):
-    """Reset."""
     dut.rst_ni.value = 0
     await ClockCycles(dut.clk_i, clocks)
     dut.rst_ni.value = 1
 
 
 async def start(dut, **values):
-    """Start the clock and reset, all inputs set."""
     drive(dut, **values)
     cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start(start_high=False))
     await reset(dut)

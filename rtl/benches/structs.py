@@ -17,7 +17,6 @@ def packed_array(values, width):
 
 
 def unpacked_array(number, count, width):
-    """Take elements apart."""
     return [number >> width * index & (1 << width) - 1 for index in range(count)]
 
 

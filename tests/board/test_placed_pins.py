@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import shutil
-import subprocess
-
 import pytest
+from fakes.placed_cells import constant, netlist
+from oracles.icarus import needs_icarus, printed_by
 
 from voxrt.board.designs.simulation.placed_netlist import UnknownCellError, placed_verilog
 
@@ -26,15 +25,12 @@ endmodule
 """
 
 
-def netlist(enable=HIGH):
+def pins(enable=HIGH):
     def pad(number, direction, **connections):
-        pins = {"B": [100 + number], **{pin: [net] for pin, net in connections.items()}}
-        return {"type": "TRELLIS_IO", "parameters": {"DIR": direction}, "connections": pins}
+        nets = {"B": [100 + number], **{pin: [net] for pin, net in connections.items()}}
+        return {"type": "TRELLIS_IO", "parameters": {"DIR": direction}, "connections": nets}
 
-    cells = {
-        name: {"type": "TRELLIS_COMB", "parameters": {"INITVAL": value * 16}, "connections": {"F": [net]}}
-        for name, value, net in (("low", "0", LOW), ("high", "1", HIGH))
-    }
+    cells = {"low": constant(LOW, 0), "high": constant(HIGH, 1)}
     cells |= {f"in{net}": pad(net, "INPUT", O=net) for net in (CLOCK, DATA, RELEASE)}
     cells["seen"] = pad(20, "OUTPUT", I=SEEN)
     cells["both"] = pad(21, "BIDIR", O=SEEN, IOLDO=PAD_DATA, IOLTO=PAD_RELEASE)
@@ -50,21 +46,17 @@ def netlist(enable=HIGH):
     names = {"clock": CLOCK, "data": DATA, "release_": RELEASE, "seen": 20, "both": 21}
     directions = {"seen": "output", "both": "inout"}
     ports = {name: {"direction": directions.get(name, "input"), "bits": [100 + n]} for name, n in names.items()}
-    return {"modules": {"top": {"ports": ports, "cells": cells}}}
+    return netlist(ports, cells)
 
 
 _FLIP_FLOP = {"OUTREGMODE": "FF", "REGSET": "SET"}
 
 
-@pytest.mark.skipif(shutil.which("iverilog") is None, reason="Icarus Verilog is not installed: apt install iverilog")
+@needs_icarus
 def test_a_pin_drives_or_is_driven(tmp_path):
-    (tmp_path / "placed.v").write_text(placed_verilog(netlist()))
-    (tmp_path / "bench.v").write_text(BENCH)
-    subprocess.run(["iverilog", "-g2012", "-o", "bench", "placed.v", "bench.v"], cwd=tmp_path, check=True)
-    finished = subprocess.run(["vvp", "bench"], cwd=tmp_path, check=True, capture_output=True, text=True)
-    assert finished.stdout.split() == ["0011z11"]
+    assert printed_by(tmp_path, BENCH, placed_verilog(pins())) == ["0011z11"]
 
 
 def test_a_flip_flop_with_an_enable_is_refused():
     with pytest.raises(UnknownCellError, match="a register at a pin is neither"):
-        placed_verilog(netlist(enable=DATA))
+        placed_verilog(pins(enable=DATA))

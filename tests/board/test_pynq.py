@@ -8,15 +8,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fakes.box_scenes import boxes, ignore
 from fakes.pynq import BASE, Core, install
-from oracles import worlds
-from oracles.cuts import memory_of
 
 from voxrt.board import register_device
 from voxrt.board.agent import voxrt_board
 from voxrt.board.errors import DeviceError, Refused
 from voxrt.board.registers import REGISTERS
-from voxrt.board.scene import Scene
 from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.simulated.model import ModelDevice
 from voxrt.board.view import Camera, View, frame_world
@@ -25,16 +23,6 @@ from voxrt.rtl.configurations import read_configurations
 
 SIZE = (64, 48)
 RTL = Path(__file__).parents[2] / "rtl"
-
-
-def scene_of(seed, depth=3):
-    colours = np.random.default_rng(seed).integers(40, 256, (256, 3), dtype=np.uint8)
-    words = memory_of(worlds.boxes(depth, 3, seed))
-    return Scene(f"world {seed}", depth, words, colours, np.zeros(256, dtype=bool))
-
-
-def ignore(_stage, _done, _total):
-    pass
 
 
 @pytest.fixture
@@ -50,7 +38,7 @@ def test_frames(monkeypatch, core, open_board):
     assert (device.identity.depth, device.identity.position_limit) == (16, 1 << 21)
     memory, model = SceneMemory(device), ModelDevice()
     for seed in (1, 2):
-        scene = scene_of(seed)
+        scene = boxes(seed, 3)
         memory.load(scene, ignore)
         SceneMemory(model).load(scene, ignore)
         for size in (SIZE, (32, 24), (32, 24)):
@@ -75,7 +63,7 @@ def test_faults(monkeypatch, core, open_board):
     vdma = install(monkeypatch, core)
     device = open_board()
     memory = SceneMemory(device)
-    memory.load(scene_of(1), ignore)
+    memory.load(boxes(1, 3), ignore)
     view = View(Camera((-20, 5, 900), (0, 0, -90), (1, 0, 0), (0, 1, 0)), SIZE)
     good = device.frame(view).colour
     with pytest.raises(DeviceError, match="reports a direction overflow;"):
@@ -85,7 +73,7 @@ def test_faults(monkeypatch, core, open_board):
         device.frame(view)
     device.write_memory(0, np.array([1], dtype=np.uint32))
     with pytest.raises(Refused, match="holds 16377"):
-        memory.load(replace(scene_of(1), words=np.full(16385, 0xFFFFFF01, dtype=np.uint32)), ignore)
+        memory.load(replace(boxes(1, 3), words=np.full(16385, 0xFFFFFF01, dtype=np.uint32)), ignore)
     core.vdma_errors = 1 << 8
     with pytest.raises(DeviceError, match=r"the VDMA reports an error \(early line\); the frame was dropped"):
         device.frame(view)
@@ -109,7 +97,7 @@ def test_faults(monkeypatch, core, open_board):
 def test_widths_that_the_vdma_cannot_write(monkeypatch, core, open_board):
     install(monkeypatch, core)
     device = open_board()
-    SceneMemory(device).load(scene_of(1), ignore)
+    SceneMemory(device).load(boxes(1, 3), ignore)
     view = View(frame_world(3, SIZE), SIZE)
     check_view(view, device.identity)
     for columns in (1, 4, 44, 62, 63):

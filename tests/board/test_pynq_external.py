@@ -6,18 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from fakes.box_scenes import boxes, ignore, picture_of, scene_of, view_of
 from fakes.pynq import Core, install
-from oracles import worlds
-from oracles.cuts import memory_of
 
 from voxrt.board.agent.voxrt_board import WORDS_BEFORE, Board, RefusedError
 from voxrt.board.errors import DeviceError
 from voxrt.board.registers import REGISTERS
-from voxrt.board.scene import Scene
 from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.simulated.core import open_rtl
-from voxrt.board.simulated.model import ModelDevice
-from voxrt.board.view import View, frame_world
 from voxrt.octree import from_points
 from voxrt.rtl.configurations import read_configurations
 
@@ -26,39 +22,20 @@ FRAME_BYTES = 3 * 1920 * 1080
 XC7Z020_WORDS = 140 * 1024  # of all its block RAM, without parity bits
 
 
+def shows(device, scene):
+    view = view_of(scene, SIZE)
+    return (device.frame(view).colour == picture_of(scene, view)).all()
+
+
 @pytest.fixture
 def core():
     pytest.importorskip("voxrt.sim._rtl", reason="the verilated core is not in this installation")
     return Core("cached1")
 
 
-def scene_of(words, depth, seed=1):
-    colours = np.random.default_rng(seed).integers(40, 256, (256, 3), dtype=np.uint8)
-    return Scene(f"world {seed}", depth, words, colours, np.zeros(256, dtype=bool))
-
-
-def boxes(seed, depth=4):
-    return scene_of(memory_of(worlds.boxes(depth, 4, seed)), depth, seed)
-
-
 def scattered(count, depth=9):
     places = np.random.default_rng(depth).integers(0, 1 << depth, (count, 3))
     return scene_of(from_points(places, [1 + place % 7 for place in range(count)], depth=depth).words, depth)
-
-
-def view_of(scene, size=SIZE):
-    return View(frame_world(scene.depth, size), size, scene.background)
-
-
-def expected(scene, view):
-    """The picture of the exact model, which holds nothing but this scene."""
-    model = ModelDevice()
-    SceneMemory(model).load(scene, ignore)
-    return model.frame(view).colour
-
-
-def ignore(_stage, _done, _total):
-    pass
 
 
 def test_frames(monkeypatch, core, open_board):
@@ -77,7 +54,7 @@ def test_frames(monkeypatch, core, open_board):
         for size in (SIZE, (32, 24)):
             view = view_of(scene, size)
             colour = device.frame(view).colour
-            assert (colour == expected(scene, view)).all()
+            assert (colour == picture_of(scene, view)).all()
             assert len(np.unique(colour.reshape(-1, 3), axis=0)) > 4
     assert roots[0] == 0 != roots[1], "the second scene is beside the first"
     device.close()
@@ -92,7 +69,7 @@ def test_a_scene_that_no_block_ram_holds(monkeypatch, core, open_board):
     scene = scattered(20000)
     assert len(scene.words) > XC7Z020_WORDS
     SceneMemory(device).load(scene, ignore)
-    assert (device.frame(view_of(scene)).colour == expected(scene, view_of(scene))).all()
+    assert shows(device, scene)
     assert device.registers()["lines_read"] > 100
 
 
@@ -106,7 +83,7 @@ def test_words_that_are_overwritten(monkeypatch, core, open_board):
     for scene in (first, second, first):
         memory.load(scene, ignore)
         for _ in range(2):
-            assert (device.frame(view_of(scene)).colour == expected(scene, view_of(scene))).all()
+            assert shows(device, scene)
         assert device.registers()["root"] == 0
 
 
@@ -130,7 +107,7 @@ def test_level_of_detail_of_an_earlier_program_is_off(monkeypatch, core, open_bo
     assert device.registers()["lod"] == 0
     scene = boxes(2)
     SceneMemory(device).load(scene, ignore)
-    assert (device.frame(view_of(scene)).colour == expected(scene, view_of(scene))).all()
+    assert shows(device, scene)
 
 
 def test_it_takes_most_of_what_is_free_and_leaves_room_for_a_frame(monkeypatch, core, open_board):
@@ -156,13 +133,13 @@ def test_errors_of_the_bus_are_one_line(monkeypatch, core, open_board):
     core.map_external(base, words[:8])  # nothing but the root answers
     device.write_memory(0, scene.words[:1])
     with pytest.raises(DeviceError, match=r"^the ray tracer reports that the bus to its octree refused a read; .*$"):
-        device.frame(view_of(scene))
+        device.frame(view_of(scene, SIZE))
     core.map_external(base, words)
-    assert (device.frame(view_of(scene)).colour == expected(scene, view_of(scene))).all()
+    assert shows(device, scene)
     read, timeout = core.read, 1 << REGISTERS["status"][1]["bus_timeout"][0]
     core.read = lambda offset: read(offset) | (timeout if offset == REGISTERS["status"][0] else 0)
     with pytest.raises(DeviceError, match=r"^the ray tracer reports that the bus to its octree did not answer; .*$"):
-        device.frame(view_of(scene))
+        device.frame(view_of(scene, SIZE))
 
 
 def test_memory_that_the_core_cannot_use(monkeypatch, core):
@@ -195,5 +172,5 @@ def test_the_simulated_core(core):  # noqa: ARG001 - skips where there is none
     memory = SceneMemory(device)
     for scene in (boxes(1), boxes(2)):
         memory.load(scene, ignore)
-        assert (device.frame(view_of(scene)).colour == expected(scene, view_of(scene))).all()
+        assert shows(device, scene)
     device.close()

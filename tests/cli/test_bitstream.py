@@ -30,23 +30,26 @@ def deep(tmp_path_factory):
     ],
 )
 def test_refused(voxrt, arguments, code, message):
-    finished = voxrt("bitstream", *arguments, "--board", "ULX3S_85F")
-    assert finished.code == code
-    assert message in finished.err
+    finished = voxrt.fails(code, message, "bitstream", *arguments, "--board", "ULX3S_85F")
     assert len(finished.err.splitlines()) == 1
 
 
 def test_boards_without_a_design_are_refused(voxrt):
     for name in ("pynq-z1", "ulx3s"):
-        finished = voxrt("bitstream", "house.obj", "--board", name)
-        assert finished.code == 2
-        assert f"no board {name!r}; there are {', '.join(board_names())};" in finished.err
+        voxrt.fails(
+            2, f"no board {name!r}; there are {', '.join(board_names())};", "bitstream", "house.obj", "--board", name
+        )
 
 
 def test_a_memory_that_is_too_deep_names_the_depth_that_fits(voxrt, deep):
-    finished = voxrt("bitstream", deep, "--board", "ulx3s-85f")
-    assert finished.code == 4
-    assert "and ulx3s-85f holds 32,769 words and 10 levels; build it with --depth " in finished.err
+    finished = voxrt.fails(
+        4,
+        "and ulx3s-85f holds 32,769 words and 10 levels; build it with --depth ",
+        "bitstream",
+        deep,
+        "--board",
+        "ulx3s-85f",
+    )
     fits = int(finished.err.split("--depth ")[1].split(",")[0])
     tree = package.read_any(deep)[0].rom.octree
     assert len(coarsen(tree, tree.depth - fits).words) <= 32_769
@@ -74,8 +77,7 @@ def test_what_an_asset_gives_up_is_told(voxrt):
     planet = EXAMPLES / "planet.glb"
     whole = package.build(planet, depth=8).rom.octree.words
     for name, rows in (("ulx3s-85f", ["budget"]), ("ulx3s-85f-sdram", ["budget", "all of it"])):
-        finished = voxrt("bitstream", planet, "--depth", "8", "--board", name)
-        assert finished.code == 0
+        finished = voxrt.succeeds("bitstream", planet, "--depth", "8", "--board", name)
         assert "words give up 20 % of the surface; --depth 7 fits without loss" in finished.err
         lines = {line[2:12].strip(): line for line in finished.err.splitlines()}
         assert [row for row in lines if row in {"budget", "all of it"}] == rows

@@ -27,8 +27,7 @@ def without_seconds(manifest: bytes) -> dict:
 
 
 def test_writes_memory_and_manifest_and_tells_people(voxrt, folder):
-    finished = voxrt("build", "house.obj", "-o", "out", "--depth", "5")
-    assert finished.code == 0, finished.err
+    finished = voxrt.succeeds("build", "house.obj", "-o", "out", "--depth", "5")
     assert finished.out == ""
     assert sorted(files(folder / "out")) == ["house.json", "house.mem"]
     assert "32 voxels per side (depth 5)" in finished.err
@@ -48,8 +47,9 @@ def test_a_voxel_size_instead_of_a_depth(voxrt, folder):
 
 
 def test_json_is_all_that_stdout_gets_and_keeps_its_promise(process, folder):
-    finished = process("build", "house.obj", "-o", "out", "--depth", "5", "--preview", "--engine", "model", "--json")
-    assert finished.code == 0, finished.err
+    finished = process.succeeds(
+        "build", "house.obj", "-o", "out", "--depth", "5", "--preview", "--engine", "model", "--json"
+    )
     report = msgspec.json.decode(finished.out, type=BuildReport, strict=True)
     result = json.loads(finished.out)
     keys = {"outputs", "depth", "words", "blocks", "voxels", "materials", "warnings", "seconds", "render"}
@@ -71,7 +71,7 @@ def test_json_is_all_that_stdout_gets_and_keeps_its_promise(process, folder):
 
 
 def test_without_preview_render_is_null(voxrt):
-    assert json.loads(voxrt("build", "house.obj", "--depth", "3", "--json").out)["render"] is None
+    assert voxrt.json("build", "house.obj", "--depth", "3")["render"] is None
 
 
 @pytest.mark.parametrize("asset", ["house.obj", "dog.usda"])
@@ -119,9 +119,7 @@ def test_dialects(voxrt, folder, dialect, empty):
 
 def test_options_reach_their_stage(voxrt, folder):
     def built(*options: str) -> dict:
-        finished = voxrt("build", "house.obj", "--depth", "5", "--json", *options)
-        assert finished.code == 0, finished.err
-        return json.loads(finished.out)
+        return voxrt.json("build", "house.obj", "--depth", "5", *options)
 
     plain = built()
     assert built("--fill", "surface")["voxels"] < plain["voxels"]
@@ -130,8 +128,7 @@ def test_options_reach_their_stage(voxrt, folder):
     assert json.loads((folder / "house.json").read_bytes())["source"]["settings"]["up"] == "z"
     built("--unit", "0.01")
     assert json.loads((folder / "house.json").read_bytes())["world"]["voxel_size"] == pytest.approx(0.0775 / 32)
-    rounded = json.loads(voxrt("build", "dog.usda", "--json").out)
-    exact = json.loads(voxrt("build", "dog.usda", "--json", "--pow2", "none").out)
+    rounded, exact = voxrt.json("build", "dog.usda"), voxrt.json("build", "dog.usda", "--pow2", "none")
     assert rounded["voxels"] > exact["voxels"]
     assert rounded["words"] < exact["words"]
 
@@ -140,9 +137,7 @@ def test_interiors_are_made_what_is_asked(voxrt, folder):
     """A cube of 16 voxels: its shell is brick, which none of its inside need be."""
 
     def built(*options: str) -> dict:
-        finished = voxrt("build", "cube.obj", "--depth", "4", "--json", *options)
-        assert finished.code == 0, finished.err
-        return json.loads(finished.out)
+        return voxrt.json("build", "cube.obj", "--depth", "4", *options)
 
     corners = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
     faces = [(1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4)]
@@ -171,14 +166,17 @@ def test_interiors_are_made_what_is_asked(voxrt, folder):
 
 @pytest.mark.parametrize("material", ["marble", "0", "9", "-1"])
 def test_interiors_of_no_material(voxrt, material):
-    finished = voxrt("build", "house.obj", f"--interior={material}")
-    assert finished.code == 3
-    assert f"has no material {material!r} for its interior; name one of: 1 timber, 2 glass" in finished.error
+    voxrt.fails(
+        3,
+        f"has no material {material!r} for its interior; name one of: 1 timber, 2 glass",
+        "build",
+        "house.obj",
+        f"--interior={material}",
+    )
 
 
 def test_warnings_go_to_people_and_to_programs(voxrt):
-    finished = voxrt("build", "dog.usda", "--depth", "5", "--unit", "2", "--json")
-    assert finished.code == 0
+    finished = voxrt.succeeds("build", "dog.usda", "--depth", "5", "--unit", "2", "--json")
     assert "voxrt: warning: " in finished.err
     assert "ignored-option" in [warning["kind"] for warning in json.loads(finished.out)["warnings"]]
 
@@ -188,10 +186,9 @@ def test_warnings_go_to_people_and_to_programs(voxrt):
 )
 def test_names(process, folder, name):
     shutil.copy(folder / "house.obj", folder / os.fsdecode(name))
-    finished = process(
+    finished = process.succeeds(
         "build", "--depth", "3", "-o", "out", "--preview", "--engine", "model", "--json", "--", os.fsdecode(name)
     )
-    assert finished.code == 0, finished.err
     outputs = json.loads(finished.out)["outputs"]
     assert all((folder / output).is_file() for output in outputs.values()), outputs
     stem = name.removesuffix(b".obj").decode("utf-8", "replace").replace("\ufffd", "_").replace("\\", "_")
@@ -211,60 +208,50 @@ def test_build_is_one_command_with_three_names(folder):
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
 def test_a_folder_without_permission(voxrt, folder):
     (folder / "out").mkdir(mode=0o500)
-    finished = voxrt("build", "house.obj", "-o", "out")
-    assert finished.code == 2
-    assert "no permission to write in out" in finished.error
+    voxrt.fails(2, "no permission to write in out", "build", "house.obj", "-o", "out")
 
 
 def test_a_target_that_is_a_folder(voxrt, folder):
     (folder / "house.mem").mkdir()
-    finished = voxrt("build", "house.obj", "--depth", "3")
-    assert finished.code == 2
-    assert "cannot be written" in finished.error
+    voxrt.fails(2, "cannot be written", "build", "house.obj", "--depth", "3")
 
 
 def test_strict_makes_warnings_errors(voxrt, folder):
     before = sorted(folder.iterdir())
-    finished = voxrt("build", "dog.usda", "--depth", "5", "--unit", "2", "--strict")
-    assert finished.code == 3
-    assert finished.error.startswith("voxrt: error: dog.usda: ")
+    voxrt.fails(3, "voxrt: error: dog.usda: ", "build", "dog.usda", "--depth", "5", "--unit", "2", "--strict")
     assert sorted(folder.iterdir()) == before
     assert voxrt("build", "dog.usda", "--depth", "5", "--strict").code == 0
 
 
 def test_a_budget_is_kept_and_its_price_told(voxrt, folder):
-    arguments = ("build", "house.obj", "--depth", "6", "--json")
-    whole = json.loads(voxrt(*arguments).out)
+    arguments = ("build", "house.obj", "--depth", "6")
+    whole = voxrt.json(*arguments)
     assert whole["budget"] is None
-    fitted = json.loads(voxrt(*arguments, "--budget", whole["words"] // 2).out)
+    fitted = voxrt.json(*arguments, "--budget", whole["words"] // 2)
     assert fitted["words"] <= whole["words"] // 2
     assert fitted["voxels"] >= whole["voxels"]
     assert fitted["budget"]["words_before"] == whole["words"]
     assert 0 < fitted["budget"]["percent_changed"] < 50
     assert 0 < fitted["budget"]["ssim"] < 1
     assert len((folder / "house.mem").read_text().split()) == fitted["words"]
-    assert "% of the surface changed" in voxrt(*arguments[:-1], "--budget", whole["words"] // 2).err
-    enough = json.loads(voxrt(*arguments, "--board", "pynq-z1").out)
+    assert "% of the surface changed" in voxrt(*arguments, "--budget", whole["words"] // 2).err
+    enough = voxrt.json(*arguments, "--board", "pynq-z1")
     assert enough["words"] == whole["words"]
     assert enough["budget"]["psnr"] is None
 
 
 def test_a_budget_that_cannot_be_met(voxrt):
-    finished = voxrt("build", "house.obj", "--depth", "6", "--budget", "5")
-    assert finished.code == 4
-    assert "give it at least" in finished.error
+    voxrt.fails(4, "give it at least", "build", "house.obj", "--depth", "6", "--budget", "5")
 
 
 def test_time_and_variants_reach_the_loader(voxrt):
-    finished = voxrt("build", "house.obj", "--depth", "3", "--time", "1", "--variant", "red", "--json")
-    assert finished.code == 0
-    kinds = [warning["kind"] for warning in json.loads(finished.out)["warnings"]]
+    result = voxrt.json("build", "house.obj", "--depth", "3", "--time", "1", "--variant", "red")
+    kinds = [warning["kind"] for warning in result["warnings"]]
     assert kinds.count("ignored-option") == 2
 
 
 def test_profile_has_a_row_a_stage(voxrt):
-    finished = voxrt("build", "house.obj", "--depth", "3", "--profile", "--json")
-    assert finished.code == 0
+    finished = voxrt.succeeds("build", "house.obj", "--depth", "3", "--profile", "--json")
     lines = [line[2:] for line in finished.err.splitlines()]
     stages = [line.split()[0] for line in lines if not line.startswith(" ")]
     assert stages == ["stage", *json.loads(finished.out)["seconds"], "all"]
@@ -302,6 +289,4 @@ def test_colours_bound_what_paint_is_reduced_to(voxrt, folder):
         assert most * 0.8 < len(names) - 1 <= most
         assert all(name.startswith("vertex colours #") for name in names[1:])
         assert manifest["source"]["settings"]["colours"] == most
-    finished = voxrt("build", "rainbow.ply", "--colours", "255")
-    assert finished.code == 2
-    assert "--colours must be an integer 1 … 254, not 255" in finished.error
+    voxrt.fails(2, "--colours must be an integer 1 … 254, not 255", "build", "rainbow.ply", "--colours", "255")

@@ -106,31 +106,15 @@ def test_a_file_names_its_cameras(tmp_path, voxrt):
     writer = GltfWriter()
     lens = {"type": "perspective", "perspective": {"yfov": 0.6, "znear": 0.1}}
     cameras = [writer.add("cameras", lens) for _ in range(2)]
-    mesh = writer.add(
-        "meshes",
-        {
-            "primitives": [
-                {
-                    "attributes": {"POSITION": writer.accessor(CORNERS.astype(np.float32))},
-                    "indices": writer.accessor(np.array(TRIANGLES, np.uint16).ravel(), "u2"),
-                }
-            ]
-        },
-    )
-    nodes = [
-        writer.add("nodes", {"mesh": mesh}),
-        writer.add("nodes", {"name": "front", "camera": cameras[0], "translation": [0.5, 0.5, 6]}),
-        writer.add("nodes", {"name": "near", "camera": cameras[1], "translation": [0.5, 0.5, 3]}),
-    ]
-    writer.json |= {"scenes": [{"nodes": nodes}], "scene": 0}
+    writer.show(mesh=writer.mesh(CORNERS, np.ravel(TRIANGLES)))
+    for name, camera, z in zip(("front", "near"), cameras, (6, 3), strict=True):
+        writer.show(name=name, camera=camera, translation=[0.5, 0.5, z])
     writer.save(tmp_path / "cube.gltf")
     assert [camera.name for camera in load_gltf(tmp_path / "cube.gltf").cameras] == ["front", "near"]
     command = ("build", "cube.gltf", "--depth", "4", "--preview", "--engine", "model", "--size", "64x48")
     pictures = set()
     for options in ((), ("--camera", "near"), ("--samples", "2"), ("--background", "light")):
-        finished = voxrt(*command, *options)
-        assert finished.code == 0, finished.err
+        voxrt.succeeds(*command, *options)
         pictures.add((tmp_path / "cube.preview.png").read_bytes())
     assert len(pictures) == 4
-    finished = voxrt(*command, "--camera", "far")
-    assert "there is no camera 'far': there are front, near" in finished.error
+    voxrt.fails(3, "there is no camera 'far': there are front, near", *command, "--camera", "far")

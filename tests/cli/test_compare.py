@@ -20,8 +20,7 @@ def built(voxrt, folder):
 def test_a_memory_is_like_its_source(voxrt, built):
     pytest.importorskip("open3d", exc_type=ImportError, reason="the extra voxrt-build[compare] is not installed")
     arguments = ("compare", "house.mem", "house.obj", "--size", "96x72")
-    finished = voxrt(*arguments, "-o", "like.png", "--json")
-    assert finished.code == 0, finished.err
+    finished = voxrt.succeeds(*arguments, "-o", "like.png", "--json")
     result = msgspec.json.decode(finished.out, type=CompareResult, strict=True)
     assert result.silhouette_iou is not None
     assert result.silhouette_iou > 0.9
@@ -36,8 +35,7 @@ def test_a_memory_is_like_its_source(voxrt, built):
 
 def test_a_finer_grid_is_liker(voxrt, built):
     pytest.importorskip("open3d", exc_type=ImportError, reason="the extra voxrt-build[compare] is not installed")
-    finished = voxrt("compare", "house.mem", "house.obj", "--size", "96x72", "--curve", "curve.png", "--json")
-    assert finished.code == 0, finished.err
+    finished = voxrt.succeeds("compare", "house.mem", "house.obj", "--size", "96x72", "--curve", "curve.png", "--json")
     curve = msgspec.json.decode(finished.out, type=CompareResult, strict=True).curve
     assert [point.depth for point in curve] == [3, 4, 5, 6]
     assert [point.words for point in curve] == sorted(point.words for point in curve)
@@ -51,6 +49,4 @@ def test_a_finer_grid_is_liker(voxrt, built):
 @pytest.mark.usefixtures("built")
 def test_without_open3d(voxrt, monkeypatch):
     monkeypatch.setitem(sys.modules, "open3d", None)
-    finished = voxrt("compare", "house.mem", "house.obj")
-    assert finished.code == 5
-    assert "pip install 'voxrt-build[compare]'" in finished.error
+    voxrt.fails(5, "pip install 'voxrt-build[compare]'", "compare", "house.mem", "house.obj")

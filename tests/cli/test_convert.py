@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-
 import msgspec
 import pytest
 
@@ -11,24 +9,17 @@ import voxrt as library
 from voxrt.cli.results.memory_results import ConvertResult
 
 
-@pytest.fixture
-def built(voxrt, folder):
-    assert voxrt("build", "house.obj", "--depth", "5").code == 0
-    return folder
-
-
 def test_around_all_formats(voxrt, built):
     source = "house.mem"
     for suffix in (".coe", ".mif", ".bin", ".blob", ".mem"):
         target = f"out/turned{suffix}"
-        finished = voxrt("convert", source, target, "--json")
-        assert finished.code == 0, finished.err
+        finished = voxrt.succeeds("convert", source, target, "--json")
         result = msgspec.json.decode(finished.out, type=ConvertResult, strict=True)
         assert result.outputs[0] == target
         assert all((built / output).is_file() for output in result.outputs)
         source = target
     assert (built / "out/turned.mem").read_bytes() == (built / "house.mem").read_bytes()
-    assert json.loads(voxrt("diff", "house.mem", "out/turned.blob", "--json").out)["voxels"] == 0
+    assert voxrt.json("diff", "house.mem", "out/turned.blob")["voxels"] == 0
     turned, _ = library.read_rom(built / "out/turned.mem")
     assert turned.materials == library.read_rom(built / "house.mem")[0].materials
     assert voxrt("info", "out/turned.blob").code == 0
@@ -39,9 +30,7 @@ def test_around_all_formats(voxrt, built):
 def test_files_for_other_programs(voxrt, built, suffix):
     if suffix == ".vtu":
         pytest.importorskip("pyvista", reason="the extra voxrt-build[view] is not installed")
-    finished = voxrt("convert", "house.mem", f"new/house{suffix}", "--json")
-    assert finished.code == 0, finished.err
-    assert json.loads(finished.out)["outputs"] == [f"new/house{suffix}"]
+    assert voxrt.json("convert", "house.mem", f"new/house{suffix}")["outputs"] == [f"new/house{suffix}"]
     first = (built / f"new/house{suffix}").read_bytes()
     assert len(first) > 1000
     assert voxrt("convert", "house.mem", f"again{suffix}").code == 0
@@ -59,7 +48,7 @@ def test_another_dialect(voxrt, built):
     assert "FFFFFFF0" in (built / "old.mem").read_text().split()
     (built / "old.json").unlink()
     assert voxrt("convert", "old.mem", "new.mem", "--from-dialect", "seed-rtl", "--depth", "5").code == 0
-    assert json.loads(voxrt("diff", "house.mem", "new.mem", "--json").out)["voxels"] == 0
+    assert voxrt.json("diff", "house.mem", "new.mem")["voxels"] == 0
 
 
 def test_a_listing_with_its_materials(voxrt, folder):
@@ -68,7 +57,7 @@ def test_a_listing_with_its_materials(voxrt, folder):
     )
     (folder / "scene.txt").write_text(f"Node 0: Material ID = None, MID1 = False, First Child Index = 1\n{children}")
     assert voxrt("convert", "scene.txt", "scene.mem", "--material", "Roof=#d65438").code == 0
-    info = json.loads(voxrt("info", "scene.mem", "--json").out)
+    info = voxrt.json("info", "scene.mem")
     assert info["voxels"] == 1
     assert info["materials"][1] == {"id": 1, "name": "Roof", "colour": [214, 84, 56], "voxels": 1}
     assert voxrt("convert", "scene.txt", "scene.mem").code == 3
@@ -87,6 +76,4 @@ def test_a_listing_with_its_materials(voxrt, folder):
 )
 def test_refusals(voxrt, built, arguments, code, message):
     (built / "broken.obj").write_text("f 1 2 3\n")
-    finished = voxrt("convert", *arguments)
-    assert finished.code == code
-    assert message in finished.error
+    voxrt.fails(code, message, "convert", *arguments)

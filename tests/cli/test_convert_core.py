@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import shutil
 import subprocess
 
@@ -14,12 +13,6 @@ from voxrt.board.registers import MATERIALS, REGISTERS
 from voxrt.rtl.configurations import read_configurations
 
 MEMORY = 0x800000
-
-
-@pytest.fixture
-def built(voxrt, folder):
-    assert voxrt("build", "house.obj", "--depth", "5").code == 0
-    return folder
 
 
 def words_of(folder):
@@ -37,8 +30,7 @@ def read_rows(path):
 
 
 def test_private_copies(voxrt, built):
-    finished = voxrt("convert", "house.mem", "out", "--form", "core", "--config", "octo", "--size", "32x24")
-    assert finished.code == 0, finished.err
+    voxrt.succeeds("convert", "house.mem", "out", "--form", "core", "--config", "octo", "--size", "32x24")
     assert sorted(path.name for path in (built / "out").iterdir()) == ["boot.hex", "octree.hex", "scene.h"]
     rows, words = read_rows(built / "out/octree.hex"), words_of(built)
     assert len(rows) == 8 << read_configurations()["octo"].parameters["BlockBits"]
@@ -118,24 +110,18 @@ int main(void) {
 def test_errors_are_one_line_and_write_nothing(voxrt, built):
     for arguments, message in (
         (("house.mem", "out.mem", "--form", "core"), "--form core writes several files; name a folder"),
-        (
-            ("house.mem", "out", "--form", "core", "--config", "nano"),
-            "there is no such configuration; name one of tiny",
-        ),
+        (("house.mem", "out", "--form", "core", "--config", "nano"), "no such configuration; name one of tiny"),
         (("house.mem", "out.coe", "--config", "tiny"), "--config and --size are of --form core"),
         (("house.mem", "house.obj/out", "--form", "core"), "is a file, not a folder"),
         (("house.mem", "out", "--form", "core", "--size", "4096x8"), "are more than the configuration tiny renders"),
     ):
-        finished = voxrt("convert", *arguments)
-        assert finished.code == 2, finished
-        assert message in finished.error
+        voxrt.fails(2, message, "convert", *arguments)
     assert not (built / "out").exists()
 
 
 def test_a_memory_that_does_not_fit(voxrt, folder):
     (folder / "deep.mem").write_text("FFFFFF01\n")
-    finished = voxrt("convert", "deep.mem", "out", "--form", "core", "--config", "octo", "--depth", "11")
-    assert finished.code == 4
-    assert re.search(r"deep: 1 words and 11 levels, and the configuration octo holds 32,769 words", finished.error)
-    assert re.search(r"--depth 10, or with --budget 32769", finished.error)
+    command = ("convert", "deep.mem", "out", "--form", "core", "--config", "octo", "--depth", "11")
+    problem = "deep: 1 words and 11 levels, and the configuration octo holds 32,769 words"
+    assert "--depth 10, or with --budget 32769" in voxrt.fails(4, problem, *command).error
     assert not (folder / "out").exists()

@@ -38,9 +38,7 @@ def test_its_path_is_the_folder_of_the_sources(voxrt):
 
 def test_without_yosys_it_says_what_to_install(voxrt, monkeypatch):
     monkeypatch.setattr(plain_verilog, "find_spec", lambda _name: None)
-    finished = voxrt("core", "--config", "tiny", "--verilog", "tiny.v")
-    assert finished.code == 5
-    assert finished.error.endswith("pip install 'voxrt-build[fpga]'")
+    voxrt.fails(5, "pip install 'voxrt-build[fpga]'", "core", "--config", "tiny", "--verilog", "tiny.v")
     assert not Path("tiny.v").exists()
 
 
@@ -56,10 +54,8 @@ def temporary(tmp_path, monkeypatch):
 @needs_yosys
 def test_what_yosys_says_when_it_fails_is_the_error(voxrt, monkeypatch, temporary):
     monkeypatch.setattr(plain_verilog, "_SCRIPT", "read_verilog {sources}\nno_such_command {top}{settings}")
-    finished = voxrt("core", "--config", "tiny", "--verilog", "tiny.v")
-    assert finished.code == 5
-    assert finished.error.startswith("voxrt: error: yosys has failed: ")
-    assert "ERROR" in finished.error
+    problem = "voxrt: error: yosys has failed: "
+    assert "ERROR" in voxrt.fails(5, problem, "core", "--config", "tiny", "--verilog", "tiny.v").error
     assert not Path("tiny.v").exists()
     assert list(temporary.iterdir()) == []
 

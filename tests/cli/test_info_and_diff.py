@@ -30,8 +30,7 @@ def worlds(folder):
 
 @pytest.mark.usefixtures("worlds")
 def test_info(voxrt):
-    finished = voxrt("info", "before.mem", "--json")
-    assert finished.code == 0
+    finished = voxrt.succeeds("info", "before.mem", "--json")
     result = msgspec.json.decode(finished.out, type=InfoResult, strict=True)
     assert (result.name, result.depth, result.words, result.blocks, result.voxels) == ("before", 3, 25, 3, 65)
     assert result.world is not None
@@ -57,8 +56,7 @@ def test_info_for_people(voxrt):
 
 @pytest.mark.usefixtures("worlds")
 def test_diff(voxrt):
-    finished = voxrt("diff", "before.mem", "after.mem", "--json")
-    assert finished.code == 0
+    finished = voxrt.succeeds("diff", "before.mem", "after.mem", "--json")
     result = msgspec.json.decode(finished.out, type=DiffResult, strict=True)
     regions = (
         Region(((0, 0, 0), (1, 1, 1)), 0, 0, 1),
@@ -93,13 +91,9 @@ def test_diff_finds_nothing(voxrt):
 
 def test_diff_of_two_depths(voxrt, worlds):
     write_rom(worlds, Rom("small", from_dense(np.ones((4, 4, 4), np.uint8)), (EMPTY, Material("stone", (0, 0, 0)))))
-    finished = voxrt("diff", "before.mem", "small.mem")
-    assert finished.code == 2
-    assert "depth 3" in finished.error
+    voxrt.fails(2, "depth 3", "diff", "before.mem", "small.mem")
 
 
 @pytest.mark.parametrize("command", ["info", "diff"])
 def test_no_memory(voxrt, command):
-    finished = voxrt(command, *["nothing.mem"] * (1 + (command == "diff")))
-    assert finished.code == 3
-    assert "nothing.mem" in finished.error
+    voxrt.fails(3, "nothing.mem", command, *["nothing.mem"] * (1 + (command == "diff")))

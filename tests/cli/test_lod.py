@@ -56,15 +56,27 @@ def test_pictures_do_not_depend_on_when_the_means_were_made(voxrt, folder):
 
 @pytest.mark.usefixtures("noise")
 def test_what_does_not_go_together_is_told_in_one_line(voxrt):
-    finished = voxrt("render", "noise.mem", "--lod", "--engine", "model", "--bounces", "2")
-    assert finished.code == 2
-    assert "--lod does not go with --light or --bounces" in finished.error
-    finished = voxrt("render", "noise.mem", "--lod-cell", "2")
-    assert finished.code == 2
-    assert "--lod-cell is of --lod; give both" in finished.error
-    finished = voxrt("render", "noise.mem", "--lod", "--lod-cell", "-2")
-    assert finished.code == 2
-    assert "--lod-cell must be a finite number above 0 and below 1024, not -2" in finished.error
-    finished = voxrt("build", "noise.mem", "--lod", "--dialect", "msb")
-    assert finished.code == 2
-    assert "--lod has its own dialect, and msb has no mean materials" in finished.error
+    voxrt.fails(
+        2,
+        "--lod does not go with --light or --bounces",
+        "render",
+        "noise.mem",
+        "--lod",
+        "--engine",
+        "model",
+        "--bounces",
+        "2",
+    )
+    voxrt.fails(2, "--lod-cell is of --lod; give both", "render", "noise.mem", "--lod-cell", "2")
+    voxrt.fails(
+        2,
+        "--lod-cell must be a finite number above 0 and below 1024, not -2",
+        "render",
+        "noise.mem",
+        "--lod",
+        "--lod-cell",
+        "-2",
+    )
+    voxrt.fails(
+        2, "--lod has its own dialect, and msb has no mean materials", "build", "noise.mem", "--lod", "--dialect", "msb"
+    )

@@ -15,15 +15,8 @@ from voxrt.cli.results.build_results import RenderResult
 MODEL = ("--engine", "model", "--size", "64x48")
 
 
-@pytest.fixture
-def built(voxrt, folder):
-    assert voxrt("build", "house.obj", "--depth", "5").code == 0
-    return folder
-
-
 def test_json(voxrt, built):
-    finished = voxrt("render", "house.mem", "-o", "out/picture.png", *MODEL, "--json")
-    assert finished.code == 0, finished.err
+    finished = voxrt.succeeds("render", "house.mem", "-o", "out/picture.png", *MODEL, "--json")
     result = msgspec.json.decode(finished.out, type=RenderResult, strict=True)
     keys = {"rays", "cycles", "words_read", "cycles_per_pixel", "words_per_ray", "seconds"}
     assert keys <= set(json.loads(finished.out))
@@ -44,73 +37,47 @@ def test_the_picture_has_the_memorys_name_and_the_previews_pixels(voxrt, built):
 @pytest.mark.usefixtures("built")
 def test_registers_are_taken_as_they_are(voxrt):
     registers = ("--look", "3,-2,-90", "--right", "1,0,0", "--up", "-0,1,0")
-    finished = voxrt("render", "house.mem", *MODEL, "--json", "--position", "-5,3.0625,-2", *registers)
-    camera = json.loads(finished.out)["camera"]
-    assert camera == {"position": [-5, 3.0625, -2], "look": [3, -2, -90], "right": [1, 0, 0], "up": [0, 1, 0]}
+    result = voxrt.json("render", "house.mem", *MODEL, "--position", "-5,3.0625,-2", *registers)
+    assert result["camera"] == {"position": [-5, 3.0625, -2], "look": [3, -2, -90], "right": [1, 0, 0], "up": [0, 1, 0]}
 
 
 @pytest.mark.usefixtures("built")
 def test_registers_that_make_no_camera(voxrt):
     for registers in (["--look", "0,0,0"], ["--look", "0,0,9", "--right", "0,0,1"], ["--up", "0,0,0"]):
-        finished = voxrt("render", "house.mem", *MODEL, *registers)
-        assert finished.code == 2
-        assert finished.error.startswith("voxrt: error: ")
+        voxrt.fails(2, "", "render", "house.mem", *MODEL, *registers)
 
 
 def test_without_manifest(voxrt, built):
     (built / "house.json").unlink()
-    finished = voxrt("render", "house.mem", *MODEL)
-    assert finished.code == 0
+    finished = voxrt.succeeds("render", "house.mem", *MODEL)
     assert "no manifest" in finished.err
-    finished = voxrt("render", "house.mem", *MODEL, "--depth", "6", "--dialect", "report")
-    assert finished.code == 0
-    finished = voxrt("render", "house.mem", *MODEL, "--depth", "1")
-    assert finished.code == 3
+    voxrt.succeeds("render", "house.mem", *MODEL, "--depth", "6", "--dialect", "report")
+    voxrt.fails(3, "", "render", "house.mem", *MODEL, "--depth", "1")
 
 
 def test_a_damaged_memory(voxrt, built):
     memory = built / "house.mem"
     memory.write_text(memory.read_text().replace("FFFFFF00", "00000002", 1))
     (built / "house.json").unlink()
-    finished = voxrt("render", "house.mem", *MODEL)
-    assert finished.code == 3
-    assert finished.error.startswith("voxrt: error: house.mem: ")
+    voxrt.fails(3, "voxrt: error: house.mem: ", "render", "house.mem", *MODEL)
 
 
 def test_memory_and_manifest_of_different_builds(voxrt, built):
     memory = built / "house.mem"
     memory.write_text(memory.read_text() + "FFFFFF00\n" * 8)
-    finished = voxrt("render", "house.mem", *MODEL)
-    assert finished.code == 3
-    assert "house.json" in finished.error
+    voxrt.fails(3, "house.json", "render", "house.mem", *MODEL)
 
 
 @pytest.mark.usefixtures("built")
 def test_directions_out_of_range(voxrt):
-    finished = voxrt(
-        "render",
-        "house.mem",
-        "--engine",
-        "model",
-        "--size",
-        "640x480",
-        "--right",
-        "32000,0,0",
-        "--look",
-        "0,0,-9",
-        "--up",
-        "0,9,0",
-    )
-    assert finished.code == 5
-    assert "2**20" in finished.error
+    registers = ("--right", "32000,0,0", "--look", "0,0,-9", "--up", "0,9,0")
+    voxrt.fails(5, "2**20", "render", "house.mem", "--engine", "model", "--size", "640x480", *registers)
 
 
 def test_an_installation_without_the_ray_tracer_says_the_way_out(voxrt, folder, monkeypatch):
     monkeypatch.setitem(sys.modules, "voxrt.sim._rtl", None)
     for arguments in (("build", "house.obj", "--depth", "3", "--preview"), ("render", "house.mem")):
-        finished = voxrt(*arguments)
-        assert finished.code == 5
-        assert "no verilated ray tracer" in finished.error
+        finished = voxrt.fails(5, "no verilated ray tracer", *arguments)
         assert "--engine model" in finished.error
     assert {"house.mem", "house.json"} <= {path.name for path in folder.iterdir()}
     assert not list(folder.glob("*.png"))
@@ -123,9 +90,7 @@ def ray_tracer():
 
 @pytest.mark.usefixtures("ray_tracer")
 def test_the_ray_tracer_counts_its_clocks(voxrt, built):
-    finished = voxrt("render", "house.mem", "--size", "64x48", "--json")
-    assert finished.code == 0, finished.err
-    result = json.loads(finished.out)
+    result = voxrt.json("render", "house.mem", "--size", "64x48")
     assert result["engine"] == "rtl"
     assert result["cycles"] > result["rays"]
     assert result["cycles_per_pixel"] == pytest.approx(result["cycles"] / result["rays"])
@@ -136,9 +101,7 @@ def test_the_ray_tracer_counts_its_clocks(voxrt, built):
 
 @pytest.mark.usefixtures("ray_tracer", "built")
 def test_check_counts_wrong_pixels(voxrt):
-    finished = voxrt("render", "house.mem", "--size", "64x48", "--check", "--json")
-    assert finished.code == 0, finished.err
-    assert json.loads(finished.out)["wrong_pixels"] == 0
+    assert voxrt.json("render", "house.mem", "--size", "64x48", "--check")["wrong_pixels"] == 0
 
 
 @pytest.mark.usefixtures("ray_tracer", "built")
@@ -167,42 +130,33 @@ def test_light_bounces_and_shading(voxrt, built):
         ["--shading", "report"],
         ["--bounces", "2"],
     ):
-        finished = voxrt("render", "house.mem", *MODEL, *options)
-        assert finished.code == 0, finished.err
+        voxrt.succeeds("render", "house.mem", *MODEL, *options)
         pictures.append((built / "house.png").read_bytes())
     assert len(set(pictures[:4])) == 4
     for options in (["--bounces", "16"], ["--light", "1,2,3", "--ambient", "256"]):
-        finished = voxrt("render", "house.mem", *MODEL, *options)
-        assert finished.code == 5
-        assert finished.error.startswith("voxrt: error: ")
+        voxrt.fails(5, "", "render", "house.mem", *MODEL, *options)
 
 
 def test_samples_and_backgrounds(voxrt, built):
     pictures = {}
     for options in ((), ("--samples", "2"), ("--background", "light"), ("--background", "#102030")):
-        finished = voxrt("render", "house.mem", *MODEL, *options)
-        assert finished.code == 0, finished.err
+        voxrt.succeeds("render", "house.mem", *MODEL, *options)
         with Image.open(built / "house.png") as picture:
             assert picture.mode == "RGB"
             pictures[options] = np.array(picture)
     assert len({picture.tobytes() for picture in pictures.values()}) == 4
     assert pictures["--background", "light"][0, 0].tolist() == [236, 240, 244]
     assert pictures["--background", "#102030"][0, 0].tolist() == [16, 32, 48]
-    finished = voxrt("render", "house.mem", *MODEL, "--background", "transparent", "--samples", "4")
-    assert finished.code == 0, finished.err
+    voxrt.succeeds("render", "house.mem", *MODEL, "--background", "transparent", "--samples", "4")
     with Image.open(built / "house.png") as picture:
         opacity = np.array(picture)[..., 3]
     assert {0, 255} < set(np.unique(opacity).tolist())
     for wrong, message in ((("--samples", "3"), "1, 2"), (("--background", "blue"), "dark, light, transparent or a")):
-        finished = voxrt("render", "house.mem", *MODEL, *wrong)
-        assert finished.code == 2
-        assert message in finished.err
+        voxrt.fails(2, message, "render", "house.mem", *MODEL, *wrong)
 
 
 @pytest.mark.usefixtures("ray_tracer")
 def test_every_sample_is_compared(voxrt, built):
-    finished = voxrt("render", "house.mem", "--size", "40x30", "--check", "--samples", "2", "--json")
-    assert finished.code == 0, finished.err
-    assert json.loads(finished.out)["wrong_pixels"] == 0
-    assert json.loads(finished.out)["rays"] == 4 * 40 * 30
+    result = voxrt.json("render", "house.mem", "--size", "40x30", "--check", "--samples", "2")
+    assert (result["wrong_pixels"], result["rays"]) == (0, 4 * 40 * 30)
     assert (built / "house.png").exists()

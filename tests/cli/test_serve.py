@@ -39,20 +39,24 @@ def serving(folder, *arguments):
     assert process.returncode == 0, errors
 
 
-def test_a_server_without_scenes_offers_the_examples(folder):
-    async def load_all(url):
-        async with open_client(url) as client:
-            await client.take_control()
-            for name in client.hello["scenes"]:
-                number = await client.send("show", scene=name)
-                while (answer := await client._answer(number))["type"] != "done":
-                    pass
-                assert answer["scene"]["words"] > 100
-            return client.hello["scenes"]
+async def show_all(url):
+    """The words of each scene that a server offers, by name."""
+    async with open_client(url) as client:
+        await client.take_control()
+        words = {}
+        for name in client.hello["scenes"]:
+            number = await client.send("show", scene=name)
+            while (answer := await client._answer(number))["type"] != "done":
+                pass
+            words[name] = answer["scene"]["words"]
+        return words
 
+
+def test_a_server_without_scenes_offers_the_examples(folder):
     with serving(folder, "--depth", "5") as served:
-        names = asyncio.run(asyncio.wait_for(load_all(served["url"]), 300))
-    assert names == ["courtyard", "dog", "house", "planet"]
+        words = asyncio.run(asyncio.wait_for(show_all(served["url"]), 300))
+    assert list(words) == ["courtyard", "dog", "house", "planet"]
+    assert min(words.values()) > 100
 
 
 def test_scenes_of_the_same_stem_are_all_served(folder):
@@ -60,18 +64,6 @@ def test_scenes_of_the_same_stem_are_all_served(folder):
         (folder / name).mkdir()
         (folder / name / "scene").with_suffix((folder / source).suffix).write_bytes((folder / source).read_bytes())
     (folder / "two" / "scene.obj").write_bytes((folder / "house.obj").read_bytes())
-
-    async def show_all(url):
-        async with open_client(url) as client:
-            await client.take_control()
-            words = {}
-            for name in client.hello["scenes"]:
-                number = await client.send("show", scene=name)
-                while (answer := await client._answer(number))["type"] != "done":
-                    pass
-                words[name] = answer["scene"]["words"]
-            return words
-
     with serving(folder, "one/scene.obj", "two/scene.usda", "two/scene.obj", "--depth", "5") as served:
         words = asyncio.run(asyncio.wait_for(show_all(served["url"]), 300))
     assert sorted(words) == ["one/scene.obj", "scene.usda", "two/scene.obj"]
@@ -82,11 +74,9 @@ def test_upload_to_a_server(voxrt, folder):
     assert voxrt("build", "dog.usda", "--depth", 5).code == 0
     with serving(folder, "house.obj", "--depth", "4", "--legacy-port", "0") as served:
         assert served["legacy_port"] > 0
-        checked = voxrt("upload", "dog.mem", "--to", served["url"], "--dry-run", "--json")
-        assert (checked.code, json.loads(checked.out)["written"]) == (0, False)
-        uploaded = voxrt("upload", "dog.mem", "--to", served["url"], "--json")
-        assert uploaded.code == 0
-        assert json.loads(uploaded.out) | {"written": False} == json.loads(checked.out)
+        checked = voxrt.json("upload", "dog.mem", "--to", served["url"], "--dry-run")
+        assert checked["written"] is False
+        assert voxrt.json("upload", "dog.mem", "--to", served["url"]) | {"written": False} == checked
         os.truncate(folder / "dog.json", 10)
         assert voxrt("upload", "dog.mem", "--to", served["url"]).code == 3
 
@@ -102,13 +92,10 @@ def test_upload_to_the_simulated_hardware(voxrt):
     pytest.importorskip("voxrt.sim._rtl")
     assert voxrt("build", "house.obj", "--depth", 4).code == 0
     for config in ("tiny", "lit"):
-        finished = voxrt("upload", "house.mem", "--device", "sim", "--config", config)
-        assert finished.code == 0
+        finished = voxrt.succeeds("upload", "house.mem", "--device", "sim", "--config", config)
         assert "house.mem: loaded" in finished.err
     for command in (("upload", "house.mem", "--device", "sim"), ("serve", "--device", "sim"), ("render", "house.mem")):
-        finished = voxrt(*command, "--config", "huge")
-        assert finished.code == 2
-        assert "no ray tracer configuration 'huge'; there are " in finished.error
+        voxrt.fails(2, "no ray tracer configuration 'huge'; there are ", *command, "--config", "huge")
 
 
 def test_a_server_on_the_simulated_hardware(folder):
@@ -152,15 +139,12 @@ def test_a_server_on_a_board_shows_what_the_model_shows(folder, board):
 def test_upload_to_a_board(voxrt, folder, board, monkeypatch):
     assert voxrt("build", "house.obj", "--depth", 4).code == 0
     for options, done in (([], "loaded"), (["--dry-run"], "checked; nothing was written")):
-        finished = voxrt("upload", "house.mem", "--to", board, *options)
-        assert finished.code == 0
+        finished = voxrt.succeeds("upload", "house.mem", "--to", board, *options)
         assert f"house.mem: {done}" in finished.err
     (folder / "wide.blob").write_bytes(blob_of(wide_scene("wide", 3000)))
-    finished = voxrt("upload", "wide.blob", "--to", board)
-    assert (finished.code, "wide has 24001 words and board at 127" in finished.error) == (4, True)
+    voxrt.fails(4, "wide has 24001 words and board at 127", "upload", "wide.blob", "--to", board)
     monkeypatch.setenv("VOXRT_BOARD_TOKEN", "another")
-    finished = voxrt("upload", "house.mem", "--to", board)
-    assert (finished.code, "the token is another one" in finished.error) == (5, True)
+    voxrt.fails(5, "the token is another one", "upload", "house.mem", "--to", board)
 
 
 def test_a_server_for_others_wants_a_token(folder):
@@ -184,6 +168,4 @@ def test_a_server_for_others_wants_a_token(folder):
     ],
 )
 def test_errors(voxrt, arguments, code, message):
-    finished = voxrt(*arguments)
-    assert finished.code == code
-    assert message in finished.error
+    voxrt.fails(code, message, *arguments)

@@ -20,8 +20,7 @@ EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 def test_what_a_ray_reads(voxrt, folder):
     assert voxrt("build", "house.obj", "--depth", "5").code == 0
-    finished = voxrt("trace", "house.mem", "--pixel", "32,24", "--size", "64x48", "--json")
-    assert finished.code == 0, finished.err
+    finished = voxrt.succeeds("trace", "house.mem", "--pixel", "32,24", "--size", "64x48", "--json")
     result = msgspec.json.decode(finished.out, type=TraceResult, strict=True)
     rom = read_rom(folder / "house.mem")[0]
     assert [rom.octree.words[reading.address] for reading in result.readings] == [r.word for r in result.readings]
@@ -93,6 +92,4 @@ def test_the_colour_is_that_of_the_rendered_pixel(voxrt, folder, lighting):
     ],
 )
 def test_wrong_pixels(voxrt, arguments, problem):
-    finished = voxrt("trace", "house.obj", *arguments)
-    assert finished.code == 2
-    assert problem in finished.error
+    voxrt.fails(2, problem, "trace", "house.obj", *arguments)

@@ -63,11 +63,7 @@ import pytest
     ],
 )
 def test_usage(voxrt, arguments, message):
-    finished = voxrt(*arguments)
-    assert finished.code == 2
-    assert finished.out == ""
-    assert finished.error.startswith("voxrt: error: ")
-    assert message in finished.error
+    voxrt.fails(2, message, *arguments)
 
 
 @pytest.mark.parametrize(
@@ -93,25 +89,17 @@ def test_asset(voxrt, folder, arguments, message):
     for name in ("notes.txt", "notes", "broken.glb", "broken.usda", "broken.obj"):
         (folder / name).write_text("v 1 2 three\nneither this nor that\n")
     before = sorted(folder.iterdir())
-    finished = voxrt(*arguments)
-    assert finished.code == 3
-    assert finished.out == ""
-    assert finished.error.startswith("voxrt: error: ")
-    assert message in finished.error
+    voxrt.fails(3, message, *arguments)
     assert sorted(folder.iterdir()) == before
 
 
 def test_a_voxel_too_small_does_not_fit(voxrt):
-    finished = voxrt("build", "house.obj", "--voxel-size", "1e-9")
-    assert finished.code == 4
-    assert finished.error.startswith("voxrt: error: ")
+    voxrt.fails(4, "", "build", "house.obj", "--voxel-size", "1e-9")
 
 
 def test_a_bug_is_one_line_that_says_how_to_report_it(voxrt, monkeypatch):
     monkeypatch.setattr("voxrt.voxelize.load", None)
-    finished = voxrt("build", "house.obj")
-    assert finished.code == 1
-    assert "this is a bug of voxrt: TypeError" in finished.error
+    finished = voxrt.fails(1, "this is a bug of voxrt: TypeError", "build", "house.obj")
     assert "please report it" in finished.error
 
 
@@ -126,8 +114,7 @@ def test_the_traceback_comes_with_debug_only(voxrt, process):
 
 @pytest.mark.parametrize("command", ["build", "render", "compare", "view", "convert", "info", "diff", "core"])
 def test_help_has_an_example(voxrt, command):
-    finished = voxrt(command, "--help")
-    assert finished.code == 0
+    finished = voxrt.succeeds(command, "--help")
     assert f"Example: voxrt {command}" in finished.out
     assert finished.err == ""
 
@@ -145,8 +132,7 @@ def test_what_a_terminal_would_act_on_is_spelled_out(voxrt):
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 def test_completion(voxrt, shell):
-    finished = voxrt("completion", shell)
-    assert finished.code == 0
+    finished = voxrt.succeeds("completion", shell)
     assert finished.err == ""
     assert "voxel-size" in finished.out
     if path := shutil.which(shell):

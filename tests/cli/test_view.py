@@ -30,17 +30,10 @@ def _canvas():
         pytest.skip(str(problem))
 
 
-@pytest.fixture
-def built(voxrt, folder):
-    assert voxrt("build", "house.obj", "--depth", "5").code == 0
-    return folder
-
-
 @pytest.mark.usefixtures("_canvas")
 def test_pictures_and_files(voxrt, built, pyvista):
     for scene in (("house.mem",), ("house.obj", "--depth", "5")):
-        finished = voxrt("view", *scene, "--screenshot", "o.png", "-o", "o.vtu", *SMALL)
-        assert finished.code == 0, finished.err
+        finished = voxrt.succeeds("view", *scene, "--screenshot", "o.png", "-o", "o.vtu", *SMALL)
         assert "hidden" in finished.err
         with Image.open(built / "o.png") as picture:
             assert picture.size == (96, 72)
@@ -64,8 +57,7 @@ def test_pictures_of_everything(voxrt, built):
         "ray": ("house.mem", "--ray", "320,240"),
         "pair": ("house.mem", "dog.usda"),
     }.items():
-        finished = voxrt("view", *arguments, "--screenshot", f"{name}.png", *SMALL)
-        assert finished.code == 0, finished.err
+        voxrt.succeeds("view", *arguments, "--screenshot", f"{name}.png", *SMALL)
         with Image.open(built / f"{name}.png") as picture:
             pictures[name] = np.asarray(picture.convert("RGB"))
     for name, picture in pictures.items():
@@ -77,8 +69,7 @@ def test_pictures_of_everything(voxrt, built):
 def test_turntables(voxrt, built, suffix, monkeypatch):
     ffmpeg = pytest.importorskip("imageio_ffmpeg", reason="it writes MP4") if suffix == "mp4" else None
     monkeypatch.setattr("voxrt.cli.commands.view._TURNS", 6)
-    finished = voxrt("view", "house.mem", "--turntable", f"t.{suffix}", *SMALL)
-    assert finished.code == 0, finished.err
+    voxrt.succeeds("view", "house.mem", "--turntable", f"t.{suffix}", *SMALL)
     if ffmpeg is None:
         with Image.open(built / "t.gif") as animation:
             assert (animation.size, animation.n_frames, animation.info["loop"]) == ((96, 72), 6, 0)
@@ -89,8 +80,7 @@ def test_turntables(voxrt, built, suffix, monkeypatch):
 @pytest.mark.usefixtures("pyvista")
 def test_other_programs_files(voxrt, built):
     for suffix in ("glb", "vox", "html"):
-        finished = voxrt("view", "house.mem", "-o", f"new/o.{suffix}")
-        assert finished.code == 0, finished.err
+        voxrt.succeeds("view", "house.mem", "-o", f"new/o.{suffix}")
         assert (built / f"new/o.{suffix}").stat().st_size > 1000
     rom, again = read_rom(built / "house.mem")[0], read_any(built / "new/o.vox")[0].rom
     assert {m.colour for m in again.materials[1:]} <= {m.colour for m in rom.materials}
@@ -123,37 +113,36 @@ def test_pyvista_reads_memories(built, pyvista):
     ],
 )
 def test_errors(voxrt, arguments, code, problem):
-    finished = voxrt("view", *arguments)
-    assert finished.code == code
-    assert problem in finished.error
+    voxrt.fails(code, problem, "view", *arguments)
 
 
 @pytest.mark.parametrize(("option", "missing"), [(("--by", "owner"), "owners"), (("--overlay",), "triangles")])
 @pytest.mark.usefixtures("built")
 def test_what_memories_do_not_know(voxrt, option, missing):
-    finished = voxrt("view", "house.mem", *option, "--screenshot", "o.png")
-    assert finished.code == 2
-    assert f"house: a memory knows no {missing}; name the asset instead" in finished.error
+    voxrt.fails(
+        2,
+        f"house: a memory knows no {missing}; name the asset instead",
+        "view",
+        "house.mem",
+        *option,
+        "--screenshot",
+        "o.png",
+    )
 
 
 def test_no_screen(voxrt, monkeypatch, pyvista):
     monkeypatch.setattr(pyvista, "system_supports_plotting", lambda: False)
-    finished = voxrt("view", "house.obj", "--depth", "4")
-    assert finished.code == 5
-    assert "voxrt: error: there is no screen" in finished.err
+    voxrt.fails(5, "voxrt: error: there is no screen", "view", "house.obj", "--depth", "4")
 
 
 @pytest.mark.parametrize("suffix", ["vox", "npz", "ply", "glb", "html"])
 def test_files_that_need_no_pyvista(voxrt, built, monkeypatch, suffix):
     monkeypatch.setitem(sys.modules, "pyvista", None)
-    finished = voxrt("view", "house.mem", "-o", f"o.{suffix}", "--slice", "x=8")
-    assert finished.code == 0, finished.err
+    voxrt.succeeds("view", "house.mem", "-o", f"o.{suffix}", "--slice", "x=8")
     assert (built / f"o.{suffix}").stat().st_size > 1000
 
 
 @pytest.mark.parametrize("wanted", [("--screenshot", "o.png"), ("-o", "o.vtu"), ("--turntable", "o.gif")])
 def test_without_pyvista(voxrt, monkeypatch, wanted):
     monkeypatch.setitem(sys.modules, "pyvista", None)
-    finished = voxrt("view", "house.obj", "--depth", "4", *wanted)
-    assert finished.code == 5
-    assert "pip install 'voxrt-build[view]'" in finished.error
+    voxrt.fails(5, "pip install 'voxrt-build[view]'", "view", "house.obj", "--depth", "4", *wanted)

@@ -5,19 +5,27 @@ from __future__ import annotations
 import struct
 import zlib
 
-from voxrt.board.designs.boot_table import BOARD_REGISTERS
-from voxrt.board.simulated.model import ModelDevice
+import numpy as np
+from fakes.box_scenes import picture_of
+
+from voxrt.board.designs.boot_table import BOARD_REGISTERS, CAMERAS
 from voxrt.board.view import Lighting, View
+from voxrt.octree.camera import look_at
 
 
 def picture(scene, camera, scale):
     """What the screen shows: each pixel of the exact model as a square."""
-    model = ModelDevice()
-    model.write_memory(0, scene.words)
-    model.write_materials(scene.colours, scene.mirrors)
-    model.select_scene(0, scene.depth)
-    frame = model.frame(View(camera, (640 >> scale, 480 >> scale), scene.background, Lighting())).colour
+    view = View(camera, (640 >> scale, 480 >> scale), scene.background, Lighting())
+    frame = picture_of(scene, view)
     return frame.repeat(1 << scale, 0).repeat(1 << scale, 1)
+
+
+def cameras_around(scene, size, *, radius, height, steps=16):
+    """Look at the middle of the world from all around, in world sides from there; `steps` cameras make a turn."""
+    side = 2.0**scene.depth
+    angles = 2 * np.pi * np.arange(CAMERAS) / steps
+    eyes = np.stack([0.5 + radius * np.cos(angles), 0 * angles + 0.5 + height, 0.5 + radius * np.sin(angles)], axis=1)
+    return [look_at(side * eye, np.full(3, side / 2), size=size) for eye in eyes]
 
 
 class Host:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import signal
 import subprocess
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import pytest
 
@@ -32,8 +33,31 @@ class Finished(NamedTuple):
         return line
 
 
-class Voxrt(Protocol):
-    def __call__(self, *arguments: object) -> Finished: ...
+class Voxrt:
+    """The command, as a function of its arguments."""
+
+    def __init__(self, command: Callable[..., Finished]) -> None:
+        self._command = command
+
+    def __call__(self, *arguments: object, **settings: object) -> Finished:
+        return self._command(*arguments, **settings)
+
+    def succeeds(self, *arguments: object, **settings: object) -> Finished:
+        finished = self(*arguments, **settings)
+        assert finished.code == 0, finished.err
+        return finished
+
+    def json(self, *arguments: object) -> Any:
+        """What a command that succeeds prints with `--json`."""
+        return json.loads(self.succeeds(*arguments, "--json").out)
+
+    def fails(self, code: int, problem: str, *arguments: object) -> Finished:
+        """All that it says is one line with the problem."""
+        finished = self(*arguments)
+        assert (finished.code, finished.out) == (code, ""), finished
+        assert finished.error.startswith("voxrt: error: "), finished.error
+        assert problem in finished.error, finished.error
+        return finished
 
 
 @pytest.fixture
@@ -56,13 +80,20 @@ def voxrt(folder: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFi
     monkeypatch.chdir(folder)
     monkeypatch.setattr(sys, "unraisablehook", sys.unraisablehook)
     handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
-    yield command
+    yield Voxrt(command)
     for number, handler in handlers.items():
         signal.signal(number, handler)
 
 
 @pytest.fixture
-def process(folder: Path) -> Callable[..., Finished]:
+def built(voxrt: Voxrt, folder: Path) -> Path:
+    """The folder, with house.mem of 32 voxels per side."""
+    voxrt.succeeds("build", "house.obj", "--depth", "5")
+    return folder
+
+
+@pytest.fixture
+def process(folder: Path) -> Voxrt:
     """``voxrt`` in a process of its own."""
 
     def command(*arguments: object, env: dict[str, str] | None = None) -> Finished:
@@ -77,4 +108,4 @@ def process(folder: Path) -> Callable[..., Finished]:
         )
         return Finished(finished.returncode, finished.stdout.decode(), finished.stderr.decode())
 
-    return command
+    return Voxrt(command)

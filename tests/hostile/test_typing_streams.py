@@ -64,8 +64,7 @@ def test_names_that_are_no_text(voxrt):
         ("upload", f"{odd}.mem", "--device", "model"),
     ]
     for line in lines:
-        finished = voxrt(*line)
-        assert finished.code == 0, finished.err
+        voxrt.succeeds(*line)
     Path(f"{odd}.json").unlink()
     assert voxrt("info", f"{odd}.mem", "--json").code == 0
     assert voxrt("build", f"{odd}-nothing.obj").code == 3

@@ -4,6 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles.octree import reference_words, unshared_words
 from oracles.random_worlds import dense_cubes
+from oracles.worlds import lumps
 
 from voxrt import octree
 from voxrt.building.fitting import Views, fit_budget
@@ -17,19 +18,6 @@ def surface(cube):
         for step in (-1, 1):
             covered &= np.roll(padded, step, axis)[1:-1, 1:-1, 1:-1]
     return (cube != 0) & ~covered
-
-
-def lumps(depth, materials=1, seed=0):
-    """A few overlapping balls with rough skins."""
-    rng = np.random.default_rng(seed)
-    side = 1 << depth
-    grid = np.stack(np.indices((side,) * 3), -1) + 0.5
-    cube = np.zeros((side,) * 3, np.uint8)
-    for i in range(4):
-        centre, radius = rng.uniform(0.3, 0.7, 3) * side, rng.uniform(0.1, 0.25) * side
-        skin = 0.05 * radius * np.sin(grid @ rng.normal(size=3) * 40 / side)
-        cube[np.linalg.norm(grid - centre, axis=-1) < radius + skin] = 1 + i % materials
-    return cube
 
 
 @given(dense_cubes())

@@ -48,6 +48,16 @@ def flatten(folder: Path, read: str) -> None:
     run_yosys(folder, f"{read}; proc; memory_collect; write_verilog -noattr top.v")
 
 
+def printed_by(folder: Path, *texts: str) -> list[str]:
+    """Compile SystemVerilog and run it; give the words that it printed."""
+    files = [f"{number}.sv" for number in range(len(texts))]
+    for file, text in zip(files, texts, strict=True):
+        (folder / file).write_text(text)
+    subprocess.run(["iverilog", "-g2012", "-o", "bench.vvp", *files], cwd=folder, check=True)
+    run = subprocess.run(["vvp", "-n", "bench.vvp"], cwd=folder, check=True, capture_output=True, text=True)
+    return run.stdout.split()
+
+
 def simulate(folder: Path, bench: str, *sources: Path) -> list[str]:
     """Run a bench that reads the writes of the first frame from boot.hex; give the numbers that it printed."""
     (folder / "bench.v").write_text(bench)

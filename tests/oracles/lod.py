@@ -9,7 +9,17 @@ from math import floor
 import numpy as np
 from oracles.ray import FACE_NONE, cells
 
+from voxrt.octree import Rom, from_dense, with_means
+from voxrt.voxelize import EMPTY, Material
 from voxrt.voxelize.colour.srgb import linear_from_srgb
+
+
+def noise(seed, side, share):
+    """A memory with mean materials: voxels of three colours, thrown independently."""
+    rng = np.random.default_rng(seed)
+    voxels = (rng.random((side,) * 3) < share).astype(np.uint8) * rng.integers(1, 4, (side,) * 3).astype(np.uint8)
+    colours = [(255, 0, 0), (0, 255, 0), (120, 130, 140)]
+    return with_means(Rom("noise", from_dense(voxels), (EMPTY, *(Material(str(c), c) for c in colours))))
 
 
 def distance_to(corner, size, position, direction):

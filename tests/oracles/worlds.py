@@ -48,6 +48,19 @@ def sponge(depth: int) -> NDArray[np.uint8]:
     return np.where(solid, 1 + x // 9 % 3, 0).astype(np.uint8)
 
 
+def lumps(depth: int, materials: int = 1, seed: int = 0) -> NDArray[np.uint8]:
+    """A few overlapping balls with rough skins."""
+    rng = np.random.default_rng(seed)
+    side = 1 << depth
+    grid = np.stack(np.indices((side,) * 3), -1) + 0.5
+    cube = np.zeros((side,) * 3, np.uint8)
+    for i in range(4):
+        centre, radius = rng.uniform(0.3, 0.7, 3) * side, rng.uniform(0.1, 0.25) * side
+        skin = 0.05 * radius * np.sin(grid @ rng.normal(size=3) * 40 / side)
+        cube[np.linalg.norm(grid - centre, axis=-1) < radius + skin] = 1 + i % materials
+    return cube
+
+
 WORLDS = {
     "sparse noise": noise(5, 0.01, 1),
     "dense noise": noise(3, 0.3, 2),

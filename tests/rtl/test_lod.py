@@ -38,18 +38,9 @@ def test_random_worlds_and_cameras(config, seed):
         camera = np.asarray(random_camera(rng, 1 << depth), np.int32)
         width, height = (int(n) for n in rng.integers(1, 21, 2))
         scale = int(rng.choice([0, 1, *rng.integers(1, 1 << rng.integers(2, 21), 6)]))
-        got = design.render(
-            camera,
-            width,
-            height,
-            depth,
-            MATERIALS,
-            lod_scale=scale,
-            stall_seed=int(rng.integers(2**32)),
-            latency=int(rng.integers(1, 120)),
-            jitter=int(rng.integers(0, 100)),
-            dram_seed=int(rng.integers(2**32)),
-        )
+        limits = {"stall_seed": (0, 2**32), "latency": (1, 120), "jitter": (0, 100), "dram_seed": (0, 2**32)}
+        pace = {name: int(rng.integers(*limit)) for name, limit in limits.items()}
+        got = design.render(camera, width, height, depth, MATERIALS, lod_scale=scale, **pace)
         assert got["errors"] == []
         for (row, column), direction in zip(
             np.ndindex(height, width), directions(camera, width, height).reshape(-1, 3), strict=True
@@ -61,10 +52,7 @@ def test_random_worlds_and_cameras(config, seed):
 
 @pytest.mark.parametrize("config", DETAILED)
 def test_a_far_view_is_the_models_and_costs_less(config):
-    rng = np.random.default_rng(3)
-    voxels = (rng.random((128,) * 3) < 0.2).astype(np.uint8) * rng.integers(1, 4, (128,) * 3).astype(np.uint8)
-    colours = [(255, 0, 0), (0, 255, 0), (120, 130, 140)]
-    rom = with_means(Rom("noise", from_dense(voxels), (EMPTY, *(Material(str(c), c) for c in colours))))
+    rom = lod.noise(3, 128, 0.2)
     camera = voxrt.aim_camera(rom, (24, 24))
     checked = voxrt.check(rom, camera, (24, 24), config=config, lod=1)
     assert checked.wrong_pixels == 0

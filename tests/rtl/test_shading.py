@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from oracles import ray
 from oracles.memory import words_of
+from oracles.planes import assert_planes
 from oracles.random_cameras import random_camera, random_voxels
 from oracles.shading import Shader, shaded_pixel
 
@@ -16,14 +17,8 @@ from voxrt.sim import _model
 rtl = pytest.importorskip("voxrt.sim._rtl", reason="this build has no verilated ray tracer")
 
 MATERIALS = np.random.default_rng(8).integers(0, 256, (256, 3), dtype=np.uint8)
-PLAIN = {
-    "flat": False,
-    "brightness": None,
-    "light": None,
-    "ambient": 0,
-    "bounces": 0,
-    "mirrors": np.zeros(256, np.uint8),
-}
+PLAIN = {"flat": False, "brightness": None, "light": None, "ambient": 0, "bounces": 0}
+PLAIN["mirrors"] = np.zeros(256, np.uint8)
 ALL = {"light", "mirrors"}
 TRACERS = {name: rtl.Tracer(name) for name in rtl.CONFIGS}
 SHADING = [name for name in TRACERS if set(rtl.FEATURES[name]) == ALL]
@@ -47,10 +42,8 @@ def configurations_with(shading):
     return [name for name in TRACERS if needed <= set(rtl.FEATURES[name])]
 
 
-def assert_equal(got, colour, material, face, note):
-    np.testing.assert_array_equal(got["material"], material, note)
-    np.testing.assert_array_equal(got["face"], face, note)
-    np.testing.assert_array_equal(got["colour"], colour, note)
+def assert_equal(got, expected, note):
+    assert_planes(got, expected, note)
     assert got["errors"] == [], note
 
 
@@ -79,7 +72,7 @@ def assert_as_the_oracle(voxels, camera, width, height, *, stall_seed=0, **shadi
     for config in configurations:
         TRACERS[config].load(words_of(voxels))
         got = TRACERS[config].render(camera, width, height, depth, MATERIALS, stall_seed=stall_seed, **shading)
-        assert_equal(got, colour, material, face, config)
+        assert_equal(got, (colour, material, face), config)
     return got
 
 
@@ -169,7 +162,7 @@ def test_as_the_model(config, seed):
         got = design.render(
             camera, width, height, depth, MATERIALS, stall_seed=int(rng.integers(2) * rng.integers(2**32)), **shading
         )
-        assert_equal(got, expected.colour, expected.material, expected.face, (camera, shading))
+        assert_equal(got, (expected.colour, expected.material, expected.face), (camera, shading))
 
 
 def room():
@@ -284,7 +277,7 @@ def test_the_deepest_world_and_the_farthest_mirrors(config):
         shading = PLAIN | {"bounces": 15, "mirrors": flags(2, 3)}
         expected = model.render(MATERIALS, camera, 24, 16, **shading)
         got = design.render(camera, 24, 16, depth, MATERIALS, **shading)
-        assert_equal(got, expected.colour, expected.material, expected.face, config)
+        assert_equal(got, (expected.colour, expected.material, expected.face), config)
         assert (got["material"] > 0).mean() > 0.3
 
 
@@ -324,7 +317,7 @@ def test_hit_points_in_leaves_of_any_size(config, seed):
         stall_seed = int(rng.integers(2) * rng.integers(2**32))
         got = design.render(camera, width, height, depth, MATERIALS, stall_seed=stall_seed, **shading)
         got["errors"] = [error for error in got["errors"] if error != "direction overflow"]
-        assert_equal(got, expected.colour, expected.material, expected.face, config)
+        assert_equal(got, (expected.colour, expected.material, expected.face), config)
 
 
 @needs_shading

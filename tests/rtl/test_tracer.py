@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from oracles.memory import words_of
+from oracles.planes import assert_planes
 from oracles.random_cameras import random_camera, random_voxels
 from oracles.ray import render
 
@@ -20,28 +23,20 @@ CONFIGURATIONS = read_configurations()
 # An external memory has no access port of the core's.
 WITH_PORT = [name for name in rtl.CONFIGS if CONFIGURATIONS[name].parameters["MemoryForm"] != 2]
 
-TRACERS = {}
-
-
-def tracer(config):
-    """One tracer a configuration: its memory is large, and loading replaces what was there."""
-    if config not in TRACERS:
-        TRACERS[config] = rtl.Tracer(config)
-    return TRACERS[config]
+# One per configuration: its memory is large, and loading replaces what was there.
+tracer = functools.cache(rtl.Tracer)
 
 
 def assert_exact(voxels, camera, width, height, *, stall_seed=0):
     """Every configuration renders what the oracle does; gives what the last one gave."""
     depth = len(voxels).bit_length() - 1
     camera = np.asarray(camera, np.int32)
-    colour, material, face = render(voxels, camera, width, height, MATERIALS)
+    expected = render(voxels, camera, width, height, MATERIALS)
     for config in rtl.CONFIGS:
         design = tracer(config)
         design.load(words_of(voxels))
         got = design.render(camera, width, height, depth, MATERIALS, stall_seed=stall_seed)
-        np.testing.assert_array_equal(got["material"], material, config)
-        np.testing.assert_array_equal(got["face"], face, config)
-        np.testing.assert_array_equal(got["colour"], colour, config)
+        assert_planes(got, expected, config)
         assert got["errors"] == []
     return got
 

@@ -8,6 +8,7 @@ from functools import partial
 
 import numpy as np
 import pytest
+from fakes.box_scenes import ignore
 from fakes.device import opened_or_skipped
 from oracles import worlds
 from oracles.cuts import memory_of
@@ -26,10 +27,6 @@ from voxrt.voxelize import Material
 
 SIZE = (48, 32)
 TINY = partial(open_rtl, "tiny")
-
-
-def ignore(_stage, _done, _total):
-    pass
 
 
 def rom_of(name, seed):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from oracles import lod, ray
 from oracles.cuts import memory_of
+from oracles.planes import assert_planes
 from oracles.random_cameras import random_camera, random_voxels
 
 import voxrt
@@ -38,9 +39,7 @@ def test_frames_are_the_oracles(seed):
         for instructions in _model.INSTRUCTION_SETS
     )
     for other in others:
-        np.testing.assert_array_equal(other.colour, frame.colour)
-        np.testing.assert_array_equal(other.material, frame.material)
-        np.testing.assert_array_equal(other.face, frame.face)
+        assert_planes(other, (frame.colour, frame.material, frame.face))
     for (row, column), direction in zip(
         np.ndindex(SIZE[1], SIZE[0]), ray.directions(camera, *SIZE).reshape(-1, 3), strict=True
     ):
@@ -110,10 +109,7 @@ def test_the_scale_of_narrower_and_wider_cells(cell):
 
 
 def test_a_picture_has_the_cells_that_are_asked_for():
-    rng = np.random.default_rng(12)
-    voxels = (rng.random((32,) * 3) < 0.4).astype(np.uint8) * rng.integers(1, 4, (32,) * 3).astype(np.uint8)
-    colours = [(255, 0, 0), (0, 255, 0), (120, 130, 140)]
-    rom = with_means(Rom("noise", from_dense(voxels), (EMPTY, *(Material(str(c), c) for c in colours))))
+    rom = lod.noise(12, 32, 0.4)
     size = (24, 18)
     camera = voxrt.aim_camera(rom, size)
     registers = np.array([camera.position, camera.look, camera.right, camera.up], np.int32)
@@ -139,10 +135,7 @@ def test_cells_that_are_none_are_refused(cell):
 
 
 def test_a_far_view_reads_fewer_words():
-    rng = np.random.default_rng(9)
-    voxels = (rng.random((64,) * 3) < 0.3).astype(np.uint8) * rng.integers(1, 4, (64,) * 3).astype(np.uint8)
-    colours = [(255, 0, 0), (0, 255, 0), (120, 130, 140)]
-    rom = with_means(Rom("noise", from_dense(voxels), (EMPTY, *(Material(str(c), c) for c in colours))))
+    rom = lod.noise(9, 64, 0.3)
     camera = voxrt.aim_camera(rom, (8, 8))
     assert rom.octree.means is not None
     registers = np.array([camera.position, camera.look, camera.right, camera.up], np.int32)

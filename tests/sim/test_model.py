@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from oracles import ray
 from oracles.adversary import adversarial_cameras, adversarial_rays
 from oracles.cuts import memory_of
+from oracles.planes import assert_planes
 from oracles.ray_batch import trace_batch
 from oracles.worlds import WORLDS
 
@@ -102,10 +103,7 @@ def test_a_frame_is_the_oracles_pixel_by_pixel(camera, size):
     palette = np.random.default_rng(7).integers(0, 256, (256, 3), dtype=np.uint8)
     registers = np.array(camera, np.int32)
     frame = _model.Memory(memory_of(voxels), 5).render(palette, registers, *size)
-    colour, material, face = ray.render(voxels, registers, *size, palette)
-    np.testing.assert_array_equal(frame.material, material)
-    np.testing.assert_array_equal(frame.face, face)
-    np.testing.assert_array_equal(frame.colour, colour)
+    assert_planes(frame, ray.render(voxels, registers, *size, palette))
 
 
 @pytest.mark.parametrize("instructions", _model.INSTRUCTION_SETS)

@@ -210,13 +210,8 @@ def test_a_configuration_without_the_feature_says_so(rom, lighting, absent):
 
 @needs_rtl
 def test_a_light_too_far_for_the_ray_tracer_is_refused(rom):
+    camera = frame_scene(rom, (40, 30))
     for light, message in ((1 << 30, "a light outside of"), (700_000, "move it nearer")):
+        lighting = Lighting((light,) * 3, on=True)
         with pytest.raises(SimulatorError, match=message):
-            render(
-                rom,
-                frame_scene(rom, (40, 30)),
-                (40, 30),
-                engine="rtl",
-                lighting=Lighting((light,) * 3, on=True),
-                config="lit4",
-            )
+            render(rom, camera, (40, 30), engine="rtl", lighting=lighting, config="lit4")
