@@ -29,7 +29,7 @@ async def served(device=None, loaded=None, scenes=None, reader=None, **options):
         if loaded is not None:
             await server.session.renderer.load(loaded, ignore)
         yield server
-    assert device.closed
+    assert not isinstance(device, FakeDevice) or device.closed
 
 
 @asynccontextmanager

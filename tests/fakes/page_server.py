@@ -9,16 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from fakes.browser import chromium
-from fakes.scene_reader import ReadyScenes
+from fakes.frame_server import served
 from oracles.cuts import memory_of
 
 from voxrt.board.simulated.model import ModelDevice
 from voxrt.boards.board_scenes import asset_reader, board_scene
 from voxrt.export import Blob
 from voxrt.octree import Octree, Rom
-from voxrt.serve.scene_library import SceneLibrary
-from voxrt.serve.server import FrameServer
-from voxrt.serve.server_options import ServerOptions
 from voxrt.voxelize import Material
 
 if TYPE_CHECKING:
@@ -30,6 +27,7 @@ if TYPE_CHECKING:
     from voxrt.board.device import Device
     from voxrt.board.scene import Scene
     from voxrt.serve.scene_process import SceneReader
+    from voxrt.serve.server import FrameServer
 
 
 def rom_of(name: str, world: NDArray[np.uint8], depth: int) -> Rom:
@@ -58,12 +56,10 @@ def serving(
 
     async def serve() -> None:
         kept["stop"] = asyncio.Event()
-        own = ReadyScenes(**{scene.name: scene})
-        library = SceneLibrary(reader or asset_reader(depth=4), own.files, own)
-        options = ServerOptions(port=port, token=token)
-        async with FrameServer(device or ModelDevice(), library, options) as server:
-            if shown:
-                await server.session.renderer.load(scene, lambda *_: None)
+        loaded, files = scene if shown else None, reader or asset_reader(depth=4)
+        async with served(
+            device or ModelDevice(), loaded, {scene.name: scene}, files, port=port, token=token
+        ) as server:
             kept["server"] = server
             ready.set()
             await kept["stop"].wait()

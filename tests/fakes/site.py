@@ -29,12 +29,12 @@ def site() -> Path:
     return SITE
 
 
-def node(script: str, **fields: object) -> list[dict[str, Any]]:
-    """Run a script of tests/web in Node; its input is the site's folder and these fields. Return what it prints."""
+def node(script: str, jobs: Sequence[Any]) -> list[dict[str, Any]]:
+    """Let a script of tests/web do jobs in Node; return what comes out of each."""
     if shutil.which("node") is None:
         pytest.skip("no node here: apt install nodejs")
     command = ["node", str(ROOT / "tests" / "web" / script)]
-    text = json.dumps({"site": str(site()), **fields})
+    text = json.dumps({"site": str(site()), "jobs": jobs})
     done = subprocess.run(command, input=text, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr[-2000:]
     return json.loads(done.stdout)
@@ -43,7 +43,7 @@ def node(script: str, **fields: object) -> list[dict[str, Any]]:
 def page_builds(*files: Sequence[Path], **options: object) -> list[dict[str, Any]]:
     """What the page makes of groups of files that are dropped together, with the same options."""
     jobs = [{"files": [str(file) for file in group], **options} for group in files]
-    return node("build_and_render.mjs", jobs=jobs)
+    return node("build_and_render.mjs", jobs)
 
 
 def sha(array: np.ndarray) -> str:

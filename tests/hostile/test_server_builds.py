@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from fakes.blob import blob_of
 from fakes.device import never_merged, scene
+from fakes.frame_server import ignore
 from fakes.serving import WAIT, serving, until
 
 from voxrt.board.errors import Refused
@@ -21,10 +22,6 @@ if not Path("/proc/self/task").exists():
 
 LONG = {"long.obj": b"v 0 0 0\nv 1 0 0.3\nv 0 1 0.7\nv 0.9 0.8 1\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 1 3 4\n"}
 """A tetrahedron: at a depth of 13 its surface takes minutes."""
-
-
-def ignore(_stage, _done, _total):
-    pass
 
 
 def build_stage(client, files):

@@ -14,26 +14,16 @@ from pathlib import Path
 import pytest
 from fakes import floods
 from fakes.device import FakeDevice, scene
+from fakes.frame_server import served
 from fakes.serving import serving, until
 from fakes.sockets import ended, raw_connection
 
-from voxrt.boards.board_scenes import asset_reader
 from voxrt.serve.frame_client import open_client
 from voxrt.serve.packets import FRAME_HEADER
-from voxrt.serve.scene_library import SceneLibrary
-from voxrt.serve.server import FrameServer
-from voxrt.serve.server_options import Limits, ServerOptions
+from voxrt.serve.server_options import Limits
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 LEGACY_REQUEST = struct.pack("<7I", *[0x7FF000] * 6, 0)
-
-
-@asynccontextmanager
-async def served(device, limits=None, **options):
-    options = ServerOptions(limits=limits or Limits(), **options)
-    async with FrameServer(device, SceneLibrary(asset_reader()), options) as server:
-        await server.session.renderer.load(scene(), lambda *_: None)
-        yield server
 
 
 @asynccontextmanager
@@ -55,7 +45,7 @@ async def test_a_viewer_that_stops_reading_is_dropped():
     """Its frames are larger than all buffers on the way. The polite viewer gets its frames meanwhile."""
     device = FakeDevice(size=(1024, 1024))
     limits = Limits(send_seconds=0.5, send_bytes_per_second=1 << 30)
-    async with served(device, limits) as server, open_client(server.url) as polite:
+    async with served(device, scene(), limits=limits) as server, open_client(server.url) as polite:
         await polite.take_control()
         await polite.request("view", nonstop=True, size=[1024, 1024])
         async with stalled(server.port), stalled(server.port):
@@ -67,7 +57,10 @@ async def test_a_viewer_that_stops_reading_is_dropped():
 async def test_the_frames_that_are_kept_for_slow_viewers_are_limited():
     device = FakeDevice(size=(1024, 1024))
     frame = 1024 * 1024 * 3 + FRAME_HEADER
-    async with served(device, Limits(frame_bytes=3 * frame)) as server, open_client(server.url) as polite:
+    async with (
+        served(device, scene(), limits=Limits(frame_bytes=3 * frame)) as server,
+        open_client(server.url) as polite,
+    ):
         await polite.take_control()
         await polite.request("view", nonstop=True, size=[1024, 1024])
         async with contextlib.AsyncExitStack() as stack:
@@ -85,7 +78,7 @@ async def test_the_frames_that_are_kept_for_slow_viewers_are_limited():
 async def test_a_viewer_that_is_flooded_by_its_own_answers_is_dropped(data):
     """It sends pings, and reads none of the pongs; or a message of endless empty fragments."""
     limits = Limits(frames_per_second=1e6, send_seconds=1e6)
-    async with served(FakeDevice(), limits) as server:
+    async with served(FakeDevice(), scene(), limits=limits) as server:
         async with stalled(server.port) as connection:
             await until(lambda: len(server.session.clients) == 1)
 
@@ -101,7 +94,10 @@ async def test_a_viewer_that_is_flooded_by_its_own_answers_is_dropped(data):
 
 async def test_connections_without_a_token_are_limited_per_address():
     limits = Limits(strangers_per_address=5, handshake_seconds=60, new_connections_per_address_and_second=1000)
-    async with served(FakeDevice(), limits, token="sesame") as server, open_client(server.url) as polite:  # noqa: SIM117 - ten connections beside the viewer
+    async with (
+        served(FakeDevice(), scene(), limits=limits, token="sesame") as server,
+        open_client(server.url) as polite,
+    ):  # noqa: SIM117 - ten connections beside the viewer
         async with contextlib.AsyncExitStack() as stack:
             first = [await stack.enter_async_context(raw_connection(server.port)) for _ in range(5)]
             await until(lambda: server.connections == 6)
@@ -114,7 +110,7 @@ async def test_connections_without_a_token_are_limited_per_address():
             await until(lambda: server.connections == 5)
             async with open_client(server.url) as second:
                 await second.request("counters")
-    async with served(FakeDevice(), Limits(new_connections_per_address_and_second=1)) as server:
+    async with served(FakeDevice(), scene(), limits=Limits(new_connections_per_address_and_second=1)) as server:
         closed = 0
         for _ in range(10):
             async with raw_connection(server.port) as (reader, writer):
@@ -124,11 +120,11 @@ async def test_connections_without_a_token_are_limited_per_address():
 
 
 async def test_the_legacy_port_is_off_unless_asked_for_and_bounded():
-    async with served(FakeDevice()) as server:
+    async with served(FakeDevice(), scene()) as server:
         assert server.legacy_port is None
     device = FakeDevice(size=(640, 512))
     async with (
-        served(device, legacy_port=0) as server,
+        served(device, scene(), legacy_port=0) as server,
         open_client(server.url) as polite,
         contextlib.AsyncExitStack() as stack,
     ):
@@ -182,7 +178,7 @@ async def test_shutdown_with_viewers_that_read_nothing(tmp_path):
 async def test_a_viewer_that_vanishes_in_its_own_flood_is_not_logged(caplog):
     """The pongs to a piece of its pings are written when the connection is lost already."""
     limits = Limits(frames_per_second=1e6, new_clients_per_second=1000)
-    async with served(FakeDevice(), limits) as server:
+    async with served(FakeDevice(), scene(), limits=limits) as server:
         for _ in range(20):
             connection = await asyncio.to_thread(floods.viewer, server.port)
             connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))

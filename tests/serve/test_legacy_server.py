@@ -6,17 +6,14 @@ import contextlib
 import struct
 
 from fakes.device import FakeDevice, scene
+from fakes.frame_server import served
 from fakes.sockets import ended, raw_connection
 from hypothesis import given
 from hypothesis import strategies as st
 
 from voxrt.board.errors import DeviceError
 from voxrt.board.view import Camera
-from voxrt.boards.board_scenes import asset_reader
 from voxrt.serve.legacy_server import read_legacy_request
-from voxrt.serve.scene_library import SceneLibrary
-from voxrt.serve.server import FrameServer
-from voxrt.serve.server_options import ServerOptions
 
 field = st.integers(-2048, 2047)
 triple = st.tuples(field, field, field)
@@ -44,9 +41,7 @@ def test_request(position, look, right, up, background):
 
 async def test_pictures():
     device = FakeDevice(size=(640, 512))
-    library, options = SceneLibrary(asset_reader()), ServerOptions(legacy_port=0)
-    async with FrameServer(device, library, options) as server:
-        await server.session.renderer.load(scene(material=9), lambda *_: None)
+    async with served(device, scene(material=9), legacy_port=0) as server:
         before = server.session.renderer.view
         async with raw_connection(server.legacy_port) as (reader, writer):
             for x in (3, 200):

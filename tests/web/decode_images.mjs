@@ -1,17 +1,9 @@
-// Decodes image files as the page does: {site, files} in, a hash of the pixels or the problem of each out.
-import { createHash } from "node:crypto";
+// Decodes image files as the page does: a hash of the pixels, or the problem, of each.
 import { readFile } from "node:fs/promises";
-import { pathToFileURL } from "node:url";
+import { answer, importOf, sha } from "./jobs.mjs";
 
-const { site, files } = JSON.parse(await new Response(process.stdin).text());
-const { decodeImage } = await import(pathToFileURL(`${site}/images.js`).href);
-const results = [];
-for (const file of files) {
-  try {
-    const { width, height, pixels } = await decodeImage(new Uint8Array(await readFile(file)), "image");
-    results.push({ size: [width, height], sha: createHash("sha256").update(pixels).digest("hex") });
-  } catch (error) {
-    results.push({ problem: error.message });
-  }
-}
-console.log(JSON.stringify(results));
+const { decodeImage } = await importOf("images.js");
+await answer(async (file) => {
+  const { width, height, pixels } = await decodeImage(new Uint8Array(await readFile(file)), "image");
+  return { size: [width, height], sha: sha(pixels) };
+});

@@ -33,7 +33,7 @@ def test_a_bitstream_has_the_bytes_of_the_command(source: str, name: str, depth:
         "flat": flat,
         "name": name,
     }
-    (found,) = node("make_bitstreams.mjs", jobs=[job])
+    (found,) = node("make_bitstreams.mjs", [job])
     assert (found["scale"], found["lead"]) == (beam.scale, beam.lead)
     assert found["cyclesPerPixel"] == beam.cycles_per_pixel
     assert found["framesPerSecond"] == beam.frames_per_second

@@ -185,7 +185,7 @@ def test_png_files_are_decoded_as_natively(tmp_path: Path) -> None:
     (tmp_path / "passes.png").write_bytes(interlaced_png(noise((13, 17, 3))))
     (tmp_path / "dot.png").write_bytes(interlaced_png(noise((1, 1, 3))))
     paths = sorted(tmp_path.glob("*.png"))
-    found = node("decode_images.mjs", files=[str(path) for path in paths])
+    found = node("decode_images.mjs", [str(path) for path in paths])
     for path, one in zip(paths, found, strict=True):
         native = decode_image(path.read_bytes(), path, "image")
         assert one == {"size": [native.shape[1], native.shape[0]], "sha": sha(native)}, path
@@ -198,7 +198,7 @@ def test_broken_images_are_refused_in_one_line(tmp_path: Path) -> None:
     for name, content in bad.items():
         (tmp_path / name).write_bytes(content)
     files = [str(tmp_path / name) for name in bad]
-    for one in node("decode_images.mjs", files=files):
+    for one in node("decode_images.mjs", files):
         assert "the image cannot be decoded" in one["problem"]
         assert "\n" not in one["problem"]
 

@@ -33,7 +33,7 @@ def job(rom: voxrt.Rom, camera: Camera, look: dict, **other: object) -> dict:
 
 
 def run(*jobs: dict) -> list[dict]:
-    return node("run_hardware.mjs", jobs=jobs)
+    return node("run_hardware.mjs", jobs)
 
 
 @pytest.mark.parametrize(("name", "depth"), [("courtyard.glb", 7), ("planet.glb", 9), ("house.obj", 4)])

@@ -57,7 +57,7 @@ def test_examples_are_built_and_rendered_as_natively(name: str, depth: int) -> N
     files = [ROOT / "examples" / file for file in EXAMPLES[name]]
     native = voxrt.build(files[0], depth=depth)
     looks = list(LOOKS.values()) if depth == 7 else [Lighting()]
-    (found,) = node("build_and_render.mjs", jobs=[job(files, native.rom, looks, depth)])
+    (found,) = node("build_and_render.mjs", [job(files, native.rom, looks, depth)])
     assert_same_memory(found, native.rom)
     assert found["grid"] == {"origin": list(native.rom.grid.origin), "voxelSize": native.rom.grid.voxel_size}
     assert found["objects"] == objects_of(native)
@@ -76,7 +76,7 @@ def test_a_memory_is_shown_as_it_was_written(tmp_path: Path) -> None:
     files = [native.outputs["mem"], native.outputs["manifest"]]
     looks = list(LOOKS.values())
     jobs = [job(files, native.rom, looks, 6), job(files[:1], native.rom, [Lighting()], 6)]
-    found, bare = node("build_and_render.mjs", jobs=jobs)
+    found, bare = node("build_and_render.mjs", jobs)
     assert found["words"] == bare["words"] == sha(native.octree.words)
     assert found["depth"] == 6
     assert bare["depth"] == voxrt.octree.decode(native.octree.words, "report", None).depth
