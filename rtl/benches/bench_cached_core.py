@@ -34,11 +34,6 @@ class CachedCore(Core):
                 self.bus.edge()
             await RisingEdge(self.dut.clk_i)
 
-    async def trace(self):
-        await self.write("control", start=1)
-        await self.wait()
-        return self.picture(*SIZE)
-
 
 def seen(voxels):
     return render(voxels, CAMERA, *SIZE, COLOURS)[0]
@@ -54,7 +49,7 @@ async def frames_are_exact(dut, latency, jitter, stalls):
     await core.begin(voxels)
     chance = random.Random(latency)
     core.ready = iter(lambda: chance.randrange(2), 2)
-    np.testing.assert_array_equal(await core.trace(), seen(voxels))
+    np.testing.assert_array_equal(await core.trace(*SIZE), seen(voxels))
     assert await core.read("configuration", "cached") == 1
     words, requests = await core.read("words_read", "value"), await core.read("word_requests", "value")
     lines, requested = await core.read("lines_read", "value"), await core.read("line_requests", "value")
@@ -70,7 +65,7 @@ async def scenes_are_swapped_with_a_flush(dut):
     core.bus.jitter = 25
     voxels = scene(1)
     await core.begin(voxels)
-    np.testing.assert_array_equal(await core.trace(), seen(voxels))
+    np.testing.assert_array_equal(await core.trace(*SIZE), seen(voxels))
     for number in range(2, 7):
         await core.write("control", start=1)
         await ClockCycles(dut.clk_i, random.randrange(1500))
@@ -79,7 +74,7 @@ async def scenes_are_swapped_with_a_flush(dut):
         np.testing.assert_array_equal(core.picture(*SIZE), seen(voxels))
         voxels = scene(number)
         core.bus.words = words_of(voxels).tolist()
-        np.testing.assert_array_equal(await core.trace(), seen(voxels))
+        np.testing.assert_array_equal(await core.trace(*SIZE), seen(voxels))
 
 
 @cocotb.test()
@@ -91,15 +86,10 @@ async def soft_reset_at_any_clock(dut):
     for number in range(8):
         await core.write("control", start=1)
         await ClockCycles(dut.clk_i, random.randrange(1, 700))
-        core.dropping = True
-        await core.write("control", soft_reset=1)
-        await ClockCycles(dut.clk_i, 4)
-        core.dropping = False
-        core.words.clear()
-        await core.write("status", frame_done=1)
+        await core.soft_reset()
         voxels = scene(number)
         core.bus.words = words_of(voxels).tolist()
-        np.testing.assert_array_equal(await core.trace(), seen(voxels))
+        np.testing.assert_array_equal(await core.trace(*SIZE), seen(voxels))
 
 
 @cocotb.test()
@@ -119,7 +109,7 @@ async def a_bus_error_ends_the_frame_with_a_flag(dut, response):
         assert await core.read("status", "bad_pointer") == 0
         await core.write("status", bus_error=1)
         core.bus.response = 0
-        np.testing.assert_array_equal(await core.trace(), seen(voxels))
+        np.testing.assert_array_equal(await core.trace(*SIZE), seen(voxels))
         assert await core.read("status", "bus_error") == 0
 
 
@@ -137,5 +127,5 @@ async def a_silent_bus_ends_the_frame_with_a_flag(dut):
     assert await core.read("status", "bus_timeout") == 1
     await core.write("status", bus_timeout=1)
     core.bus.silent = False
-    np.testing.assert_array_equal(await core.trace(), seen(voxels))
+    np.testing.assert_array_equal(await core.trace(*SIZE), seen(voxels))
     assert await core.read("status", "bus_timeout") == 0

@@ -6,7 +6,7 @@ import random
 import cocotb
 import numpy as np
 from cocotb.triggers import ClockCycles, RisingEdge
-from core_driver import CAMERA, COLOURS, MIRRORS, Core, scene
+from core_driver import CAMERA, COLOURS, MIRRORS, scene, started
 from oracles.memory import words_of
 from oracles.ray import directions, render
 from oracles.shading import Shader, shaded_pixel
@@ -27,10 +27,8 @@ def shaded(voxels, width, height, **shading):
 @cocotb.test()
 async def every_width_and_pattern(dut):
     """All phases of the packer, under back-pressure of several kinds."""
-    core = Core(dut)
-    await core.start()
     voxels = scene(1)
-    await core.load(words_of(voxels))
+    core = await started(dut, voxels)
     chance = random.Random(1)
     patterns = [
         itertools.repeat(1),
@@ -41,18 +39,15 @@ async def every_width_and_pattern(dut):
     for width, pattern in itertools.product((1, 2, 3, 4, 5, 8, 11), patterns):
         core.ready = pattern
         await core.set_frame(CAMERA, width, 3, 3)
-        await core.write("control", start=1)
-        await core.wait()
         colour, _, _ = render(voxels, CAMERA, width, 3, COLOURS)
-        np.testing.assert_array_equal(core.picture(width, 3), colour)
+        np.testing.assert_array_equal(await core.trace(width, 3), colour)
         assert core.words == []
 
 
 @cocotb.test()
 async def counters_and_identity(dut):
     """Read registers as the description says, and count a frame."""
-    core = Core(dut)
-    await core.start()
+    core = await started(dut)
     assert (await core.axi.read_dword(REGISTERS["identity"][0])).to_bytes(4, "big") == b"VXRT"
     assert await core.read("size", "width") == 640
     assert await core.read("size", "height") == 480
@@ -77,8 +72,7 @@ async def counters_and_identity(dut):
 @cocotb.test()
 async def a_scene_is_swapped_between_frames(dut):
     """Continuous frames; hold, write another scene, go on: every frame shows one scene, none is torn or hangs."""
-    core = Core(dut)
-    await core.start()
+    core = await started(dut)
     worlds = [scene(3), scene(4)]
     pictures = [render(world, CAMERA, 12, 9, COLOURS)[0] for world in worlds]
     await core.load(words_of(worlds[0]))
@@ -92,10 +86,7 @@ async def a_scene_is_swapped_between_frames(dut):
     await core.write("control", continuous=1)
     await core.wait()
     await core.wait()
-    await core.write("control", hold=1)
-    while await core.read("status", "busy"):
-        pass
-    await ClockCycles(dut.clk_i, 40)
+    await core.hold(40)
     seen = []
     while core.words:
         picture = core.picture(12, 9)
@@ -109,8 +100,7 @@ async def a_scene_is_swapped_between_frames(dut):
 @cocotb.test()
 async def scenes_are_swapped_by_their_roots_while_frames_go_on(dut):
     """Write root at any clock, and words of the scene that is not traced; every frame shows one scene, whole."""
-    core = Core(dut)
-    await core.start()
+    core = await started(dut)
     worlds = [scene(9), scene(10)]
     pictures = [render(world, CAMERA, 9, 7, COLOURS)[0] for world in worlds]
     first, second = (words_of(world) for world in worlds)
@@ -131,10 +121,7 @@ async def scenes_are_swapped_by_their_roots_while_frames_go_on(dut):
         if number % 2:
             await core.load(first)
         await ClockCycles(dut.clk_i, chance.randrange(200))
-    await core.write("control", hold=1)
-    while await core.read("status", "busy"):
-        pass
-    await ClockCycles(dut.clk_i, 100)
+    await core.hold(100)
     seen = []
     while core.words:
         picture = core.picture(9, 7)
@@ -145,14 +132,11 @@ async def scenes_are_swapped_by_their_roots_while_frames_go_on(dut):
 
 @cocotb.test()
 async def a_camera_written_during_a_frame_shows_in_the_next(dut):
-    core = Core(dut)
-    await core.start()
     voxels = scene(5)
-    await core.load(words_of(voxels))
+    core = await started(dut, voxels, 16, 16)
     other = CAMERA.copy()
     other[0] = [40, 40, -90]
     other[1] = [9, 8, 90]
-    await core.set_frame(CAMERA, 16, 16, 3)
     await core.write("control", start=1)
     await core.set_frame(other, 7, 5, 3)
     await core.wait()
@@ -165,11 +149,8 @@ async def a_camera_written_during_a_frame_shows_in_the_next(dut):
 @cocotb.test()
 async def reset_at_any_clock(dut):
     """Reset in the middle of a frame, after a picture that would show through; the next frame is whole."""
-    core = Core(dut)
-    await core.start()
     voxels = scene(6)
-    await core.load(words_of(voxels))
-    await core.set_frame(CAMERA, 9, 6, 3)
+    core = await started(dut, voxels, 9, 6)
     expected = render(voxels, CAMERA, 9, 6, COLOURS)[0]
     other = CAMERA.copy()
     other[0] = [40, 40, -90]
@@ -177,17 +158,10 @@ async def reset_at_any_clock(dut):
         await core.set_frame(other, 9, 6, 3)
         await core.write("control", start=1)
         await ClockCycles(dut.clk_i, clocks)
-        core.dropping = True
-        await core.write("control", soft_reset=1)
-        await ClockCycles(dut.clk_i, 4)
-        core.dropping = False
+        await core.soft_reset()
         assert await core.read("status", "busy") == 0
-        core.words.clear()
-        await core.write("status", frame_done=1)
         await core.set_frame(CAMERA, 9, 6, 3)
-        await core.write("control", start=1)
-        await core.wait()
-        np.testing.assert_array_equal(core.picture(9, 6), expected)
+        np.testing.assert_array_equal(await core.trace(9, 6), expected)
 
 
 @cocotb.test()
@@ -197,10 +171,8 @@ async def one_clock_of_reset(dut, reset):
 
     A frame has more rays per lane than a lane has rows for their weights, so that each row is used again.
     """
-    core = Core(dut)
-    await core.start()
     voxels = scene(11)
-    await core.load(words_of(voxels))
+    core = await started(dut, voxels)
     features = {name for name in ("light", "mirrors") if await core.read("features", name)}
     shading = {"light": {"light": (-40, 200, 30), "ambient": 50}, "mirrors": {"bounces": 3, "mirrors": MIRRORS}}
     shading = {key: value for name in features for key, value in shading[name].items()}
@@ -231,9 +203,7 @@ async def one_clock_of_reset(dut, reset):
         core.words.clear()
         await core.write("status", frame_done=1)
         for _ in range(3):
-            await core.write("control", start=1)
-            await core.wait()
-            np.testing.assert_array_equal(core.picture(width, height), expected)
+            np.testing.assert_array_equal(await core.trace(width, height), expected)
         assert core.words == []
 
 
@@ -241,26 +211,19 @@ async def one_clock_of_reset(dut, reset):
 @cocotb.parametrize(register=["size", "depth"])
 async def values_out_of_range_count_as_the_nearest(dut, register):
     """Width, height and depth 0, and depths above the deepest."""
-    core = Core(dut)
-    await core.start()
     deepest = int(dut.MaxDepth.value)
     voxels = scene(12)
-    await core.load(words_of(voxels))
-    await core.set_frame(CAMERA, 7, 5, 3)
+    core = await started(dut, voxels, 7, 5)
     if register == "size":
         for written, meant in (((0, 5), (1, 5)), ((7, 0), (7, 1)), ((0, 0), (1, 1))):
             await core.write("size", width=written[0], height=written[1])
-            await core.write("control", start=1)
-            await core.wait()
-            np.testing.assert_array_equal(core.picture(*meant), render(voxels, CAMERA, *meant, COLOURS)[0])
+            np.testing.assert_array_equal(await core.trace(*meant), render(voxels, CAMERA, *meant, COLOURS)[0])
         return
     for depth in (0, deepest + 1, 31):
         pictures = []
         for number in (depth, min(max(depth, 1), deepest)):
             await core.write("depth", depth=number)
-            await core.write("control", start=1)
-            await core.wait()
-            pictures.append(core.picture(7, 5))
+            pictures.append(await core.trace(7, 5))
         np.testing.assert_array_equal(*pictures)
 
 
@@ -268,8 +231,7 @@ async def values_out_of_range_count_as_the_nearest(dut, register):
 @cocotb.parametrize(writes=[False, True])
 async def the_processor_uses_the_memory_port_at_every_clock(dut, writes):
     """Lanes keep a share of the memory: the frame ends, in at most 2.5 times the clocks; its pixels are the same."""
-    core = Core(dut)
-    await core.start()
+    core = await started(dut)
     voxels = scene(13)
     words = words_of(voxels)
     await core.load(words)
@@ -301,8 +263,7 @@ async def the_processor_uses_the_memory_port_at_every_clock(dut, writes):
 @cocotb.test()
 async def errors_stick_until_cleared(dut):
     """Raise an error by a corrupt memory; the frame ends."""
-    core = Core(dut)
-    await core.start()
+    core = await started(dut)
     await core.load([1, *[1] * 8])
     await core.set_frame(CAMERA, 8, 8, 3)
     await core.write("control", start=1)
@@ -319,32 +280,27 @@ async def errors_stick_until_cleared(dut):
 @cocotb.test()
 async def directions_that_are_too_long(dut):
     """Refuse rays with a component of 2**20 or more, say so, and trace the others of the line."""
-    core = Core(dut)
-    await core.start()
     voxels = scene(7)
-    await core.load(words_of(voxels))
+    core = await started(dut, voxels)
     camera = np.array([[-60, 150, -70], [20000, -15000, 20000], [32767, 0, 0], [0, 300, 0]], np.int32)
     await core.set_frame(camera, 80, 2, 3)
-    await core.write("control", start=1)
-    await core.wait()
+    picture = await core.trace(80, 2)
     colour, material, _ = render(voxels, camera, 80, 2, COLOURS)
     refused = (np.abs(directions(camera, 80, 2)) >= 1 << 20).any(axis=2)
     assert refused.any()
     assert (material > 0).any()
-    np.testing.assert_array_equal(core.picture(80, 2), np.where(refused[..., None], COLOURS[0], colour))
+    np.testing.assert_array_equal(picture, np.where(refused[..., None], COLOURS[0], colour))
     assert await core.read("status", "direction_overflow") == 1
     await core.write("status", direction_overflow=1)
     await core.set_frame(CAMERA, 5, 4, 3)
-    await core.write("control", start=1)
-    await core.wait()
+    await core.trace(5, 4)
     assert await core.read("status", "direction_overflow") == 0
 
 
 @cocotb.test()
 async def light_and_mirrors_written_during_a_frame_show_in_the_next(dut):
     """Shading is latched at the frame's start; a core without a feature shows none, and says so."""
-    core = Core(dut)
-    await core.start()
+    core = await started(dut)
     features = {name for name in ("light", "mirrors") if await core.read("features", name)}
     parameters = {"light": dut.Light, "mirrors": dut.Mirrors}
     assert features == {name for name, built in parameters.items() if int(built.value)}
@@ -369,14 +325,9 @@ async def light_and_mirrors_written_during_a_frame_show_in_the_next(dut):
         await core.write("control", start=1)
         await core.set_light(following.get("light", (0, 0, 0)))
         await core.set_faces(following.get("faces", (77,) * 6))
-        await core.write(
-            "shading",
-            flat="flat" in following,
-            faces="faces" in following,
-            light="light" in following,
-            ambient=following.get("ambient", 0),
-            bounces=following.get("bounces", 0),
-        )
+        present = {name: name in following for name in ("flat", "faces", "light")}
+        values = {name: following.get(name, 0) for name in ("ambient", "bounces")}
+        await core.write("shading", **present, **values)
         await core.wait()
         built = {name: value for name, value in look.items() if name not in FEATURES or FEATURES[name] in features}
         np.testing.assert_array_equal(core.picture(14, 11), shaded(voxels, 14, 11, **built))

@@ -3,9 +3,8 @@
 import random
 
 import cocotb
-from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
-from streams import drive, pace
+from streams import drive, pace, start_clock
 
 DIVISOR_BITS = QUOTIENT_BITS = 8
 
@@ -20,7 +19,7 @@ def some_division():
 @cocotb.test()
 @cocotb.parametrize(sending=["always", "random"])
 async def quotients(dut, sending):
-    cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start(start_high=False))
+    start_clock(dut)
     drive(dut, valid_i=0)
     await RisingEdge(dut.clk_i)
     there, entering, shown = pace(sending), [None] * QUOTIENT_BITS, None

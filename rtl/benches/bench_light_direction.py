@@ -4,9 +4,8 @@ import random
 
 import cocotb
 from bench_brightness import lit_point, some_place
-from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
-from streams import drive, pace
+from streams import drive, pace, start_clock
 from structs import HIT_POINT, packed_array
 
 DEPTH = 6
@@ -34,7 +33,7 @@ def some_light(side):
 @cocotb.parametrize(enabled=["always", "random"])
 async def exact(dut, enabled):
     drive(dut, enable_i=0)
-    cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start(start_high=False))
+    start_clock(dut)
     await RisingEdge(dut.clk_i)
     counts = pace(enabled)
     for _ in range(40):

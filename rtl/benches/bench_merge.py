@@ -4,7 +4,7 @@ from random import randrange
 
 import cocotb
 from cocotb.triggers import ClockCycles, RisingEdge, with_timeout
-from streams import PACES, drive, pace, reset, start, take
+from streams import PACES, cancel, drive, pace, reset, start, take
 
 LANES = 5
 
@@ -50,9 +50,7 @@ async def reset_at_any_clock(dut):
         tasks = [cocotb.start_soon(lanes(dut, pixels, "random"))]
         tasks.append(cocotb.start_soon(take(dut, 20, "random", lambda: int(dut.pixel_o.value))))
         await ClockCycles(dut.clk_i, randrange(1, 40))
-        for task in tasks:
-            if not task.done():
-                task.cancel()
+        cancel(*tasks)
         drive(dut, valid_i=0, ready_i=0)
         await reset(dut)
         sender = cocotb.start_soon(lanes(dut, pixels, "random"))

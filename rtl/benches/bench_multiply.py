@@ -3,9 +3,8 @@
 import random
 
 import cocotb
-from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
-from streams import drive
+from streams import drive, start_clock
 
 LATENCY = 2
 
@@ -18,7 +17,7 @@ def some_number(bits):
 
 @cocotb.test()
 async def products(dut):
-    cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start(start_high=False))
+    start_clock(dut)
     await RisingEdge(dut.clk_i)
     on_the_way = [None] * LATENCY
     for _ in range(5000):

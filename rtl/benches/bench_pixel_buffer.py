@@ -4,7 +4,7 @@ from random import randrange, shuffle
 
 import cocotb
 from cocotb.triggers import ClockCycles, FallingEdge, RisingEdge, with_timeout
-from streams import PACES, drive, pace, reset, start, take
+from streams import PACES, cancel, drive, pace, reset, start, take
 
 
 async def complete(dut, pixels, kind, disorder):
@@ -60,9 +60,7 @@ async def reset_at_any_clock(dut):
         tasks = [cocotb.start_soon(complete(dut, pixels, "random", 5))]
         tasks.append(cocotb.start_soon(take(dut, 40, "random", lambda: seen(dut))))
         await ClockCycles(dut.clk_i, randrange(1, 200))
-        for task in tasks:
-            if not task.done():
-                task.cancel()
+        cancel(*tasks)
         drive(dut, allocate_i=0, complete_i=0, store_i=0, ready_i=0)
         await reset(dut)
         await ClockCycles(dut.clk_i, 20)

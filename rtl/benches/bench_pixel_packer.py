@@ -5,7 +5,7 @@ import random
 import cocotb
 from cocotb.triggers import ClockCycles, with_timeout
 from cocotbext.axi import AxiStreamBus, AxiStreamSink
-from streams import PACES, drive, pace, reset, send, start
+from streams import PACES, cancel, drive, pace, reset, send, start
 
 
 def sink_of(dut, taking):
@@ -64,8 +64,7 @@ async def reset_at_any_clock(dut):
         items, lines = frame(width, 4)
         sender = cocotb.start_soon(send(dut, items, "random"))
         await ClockCycles(dut.clk_i, random.randrange(1, 4 * width + 2))
-        if not sender.done():
-            sender.cancel()
+        cancel(sender)
         drive(dut, valid_i=0)
         await reset(dut)
         await ClockCycles(dut.clk_i, 2)

@@ -4,9 +4,8 @@ import random
 
 import cocotb
 from bench_multiply import some_number
-from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
-from streams import drive
+from streams import drive, start_clock
 
 LATENCY = 3
 
@@ -18,7 +17,7 @@ def some_distance(bits):
 
 @cocotb.test()
 async def times(dut):
-    cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start(start_high=False))
+    start_clock(dut)
     await RisingEdge(dut.clk_i)
     modulus = 1 << len(dut.time_o)
     on_the_way = [None] * LATENCY

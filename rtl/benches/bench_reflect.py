@@ -4,9 +4,8 @@ import random
 from itertools import count
 
 import cocotb
-from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
-from streams import drive, pace
+from streams import drive, pace, start_clock
 from structs import MATERIAL_WRITE
 
 SLOTS = 12
@@ -87,7 +86,7 @@ class Ring:
 
 async def prepare(dut):
     drive(dut, material_write_i=0, hit_i=0, issues_i=0)
-    cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start(start_high=False))
+    start_clock(dut)
     await RisingEdge(dut.clk_i)
     ring = Ring(dut)
     await ring.fill_table()

@@ -6,7 +6,7 @@ import re
 import cocotb
 from cocotb.triggers import ClockCycles
 from cocotbext.axi import AxiResp
-from core_driver import Core
+from core_driver import started
 from run import GENERATED
 from voxrt_registers import MATERIALS, REGISTERS
 
@@ -43,8 +43,7 @@ async def the_table_is_the_map(_):
 @cocotb.test()
 async def resets(dut):
     """All that has a reset value, and all that is reserved, which reads as 0."""
-    core = Core(dut)
-    await core.start()
+    core = await started(dut)
     for name, fields in described().items():
         value = await core.axi.read_dword(REGISTERS[name][0])
         known = sum((1 << (high + 1)) - (1 << low) for low, high, _, reset in fields if reset is not None)
@@ -56,8 +55,7 @@ async def resets(dut):
 @cocotb.test()
 async def masks(dut):
     """Change what may be written, in this register alone."""
-    core = Core(dut)
-    await core.start()
+    core = await started(dut)
     table = {name: fields for name, fields in described().items() if name not in ACTS}
     values = {}
     for name, fields in table.items():
@@ -76,8 +74,7 @@ async def masks(dut):
 @cocotb.test()
 async def strobes(dut):
     """Single bytes and pairs, at every place, change no other byte."""
-    core = Core(dut)
-    await core.start()
+    core = await started(dut)
     for name, fields in described().items():
         if name in ACTS or not mask(fields, "rw"):
             continue
@@ -97,8 +94,7 @@ async def strobes(dut):
 @cocotb.test()
 async def addresses_without_a_register_are_refused(dut):
     """SLVERR, to reads and writes alike; all that the map names answers OKAY, read-only registers to writes too."""
-    core = Core(dut)
-    await core.start()
+    core = await started(dut)
     mapped = {address for address, _ in REGISTERS.values()} | set(range(MATERIALS, MATERIALS + 1024, 4))
     for address in range(0, 2048, 4):
         expected = AxiResp.OKAY if address in mapped else AxiResp.SLVERR
@@ -110,8 +106,7 @@ async def addresses_without_a_register_are_refused(dut):
 @cocotb.test()
 async def a_reset_brings_the_resets_back(dut):
     """Reset by the pin; a soft reset leaves registers alone."""
-    core = Core(dut)
-    await core.start()
+    core = await started(dut)
     await core.write("size", width=7, height=9)
     await core.write("control", soft_reset=1)
     assert await core.read("size", "width") == 7

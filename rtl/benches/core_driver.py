@@ -4,9 +4,10 @@ import itertools
 
 import cocotb
 import numpy as np
-from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 from cocotbext.axi import AxiLiteBus, AxiLiteMaster
+from oracles.memory import words_of
+from streams import start_clock
 from voxrt_registers import MATERIALS, REGISTERS
 
 COLOURS = np.random.default_rng(4).integers(0, 256, (256, 3), dtype=np.uint8)
@@ -35,7 +36,7 @@ class Core:
             dut.bram_en_i.value = 0
         dut.m_axis_tready.value = 0
         dut.rst_ni.value = 0
-        cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start(start_high=False))
+        start_clock(dut)
         await ClockCycles(dut.clk_i, 20)
         dut.rst_ni.value = 1
         await ClockCycles(dut.clk_i, 2)
@@ -115,6 +116,28 @@ class Core:
             entry = (material in MIRRORS) << 24 | red << 16 | green << 8 | blue
             await self.axi.write_dword(MATERIALS + 4 * material, entry)
 
+    async def trace(self, width, height):
+        """Trace a frame; give its picture."""
+        await self.write("control", start=1)
+        await self.wait()
+        return self.picture(width, height)
+
+    async def soft_reset(self):
+        """Reset, and drop what came of the frame."""
+        self.dropping = True
+        await self.write("control", soft_reset=1)
+        await ClockCycles(self.dut.clk_i, 4)
+        self.dropping = False
+        self.words.clear()
+        await self.write("status", frame_done=1)
+
+    async def hold(self, clocks):
+        """Let no further frame start, and wait until the present one has ended."""
+        await self.write("control", hold=1)
+        while await self.read("status", "busy"):
+            pass
+        await ClockCycles(self.dut.clk_i, clocks)
+
     async def wait(self):
         for _ in range(20000):
             if await self.read("status", "frame_done"):
@@ -143,3 +166,14 @@ class Core:
             assert len(data) == 3 * width
             lines.append(np.frombuffer(data, np.uint8).reshape(width, 3)[:, [2, 0, 1]])  # from G, B, R
         return np.stack(lines)
+
+
+async def started(dut, voxels=None, *size):
+    """A core that has started, with a scene and frames of a size."""
+    core = Core(dut)
+    await core.start()
+    if voxels is not None:
+        await core.load(words_of(voxels))
+    if size:
+        await core.set_frame(CAMERA, *size, 3)
+    return core

@@ -4,7 +4,7 @@ import random
 
 import cocotb
 from cocotb.triggers import ClockCycles, RisingEdge, with_timeout
-from streams import drive, reset, take
+from streams import cancel, drive, reset, take
 from structs import RASTER
 
 
@@ -65,8 +65,7 @@ async def check_reset(dut, frame, wanted, get):
     await begin(dut, frame)
     taker = cocotb.start_soon(take(dut, len(wanted), "random", get))
     await ClockCycles(dut.clk_i, random.randrange(1, 40))
-    if not taker.done():
-        taker.cancel()
+    cancel(taker)
     await reset(dut)
     assert not int(dut.valid_o.value)
     await check_frame(dut, frame, wanted, "random", get)

@@ -27,10 +27,20 @@ async def reset(dut, clocks=3):
     dut.rst_ni.value = 1
 
 
+def start_clock(dut):
+    cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start(start_high=False))
+
+
 async def start(dut, **values):
     drive(dut, **values)
-    cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start(start_high=False))
+    start_clock(dut)
     await reset(dut)
+
+
+def cancel(*tasks):
+    for task in tasks:
+        if not task.done():
+            task.cancel()
 
 
 async def send(dut, items, kind, *, valid="valid_i", ready="ready_o"):
@@ -82,8 +92,19 @@ async def reset_on_the_way(dut, items, get, **ports):
     taker = take(dut, len(items), "random", get, **ports)
     tasks = [cocotb.start_soon(send(dut, items, "random")), cocotb.start_soon(taker)]
     await ClockCycles(dut.clk_i, random.randrange(1, 2 * len(items)))
-    for task in tasks:
-        if not task.done():
-            task.cancel()
+    cancel(*tasks)
     drive(dut, valid_i=0, **{ports.get("ready", "ready_i"): 0})
     await reset(dut)
+
+
+async def check_bytes(dut, sending, taking):
+    """Bytes in are the same bytes out."""
+    items = list(random.randbytes(300))
+    sent = [{"data_i": item} for item in items]
+    assert await exchange(dut, sent, lambda: int(dut.data_o.value), sending, taking) == items
+
+
+async def check_bytes_after_reset(dut):
+    """Of the bytes before a reset at any clock none comes after it."""
+    await reset_on_the_way(dut, [{"data_i": item} for item in random.randbytes(40)], lambda: int(dut.data_o.value))
+    await check_bytes(dut, "random", "random")
