@@ -4,7 +4,7 @@ import random
 
 import cocotb
 import numpy as np
-from bench_core import COLOURS, Core
+from core_driver import COLOURS, Core
 from cocotb.triggers import RisingEdge
 from oracles import lod, ray
 from oracles.memory import words_of

@@ -105,6 +105,6 @@ async def check_bytes(dut, sending, taking):
 
 
 async def check_bytes_after_reset(dut):
-    """Of the bytes before a reset at any clock none comes after it."""
+    """Nothing sent before a reset at any clock comes after it."""
     await reset_on_the_way(dut, [{"data_i": item} for item in random.randbytes(40)], lambda: int(dut.data_o.value))
     await check_bytes(dut, "random", "random")

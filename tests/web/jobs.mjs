@@ -12,7 +12,12 @@ export const sha = (bytes) => createHash("sha256").update(bytes).digest("hex");
 /** Do each job and print what came out, or the problem with what `known` says. */
 export async function answer(work, known = () => ({})) {
   const results = [];
-  for (const job of jobs)
-    results.push(await Promise.try(work, job).catch(({ message }) => ({ problem: message, ...known() })));
+  for (const job of jobs) {
+    try {
+      results.push(await work(job));
+    } catch ({ message }) {
+      results.push({ problem: message, ...known() });
+    }
+  }
   console.log(JSON.stringify(results));
 }
