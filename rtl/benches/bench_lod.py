@@ -4,8 +4,8 @@ import random
 
 import cocotb
 import numpy as np
-from core_driver import COLOURS, Core
 from cocotb.triggers import RisingEdge
+from core_driver import COLOURS, Core
 from oracles import lod, ray
 from oracles.memory import words_of
 from oracles.random_cameras import random_camera

@@ -97,19 +97,19 @@ async def test_connections_without_a_token_are_limited_per_address():
     async with (
         served(FakeDevice(), scene(), limits=limits, token="sesame") as server,
         open_client(server.url) as polite,
-    ):  # noqa: SIM117 - ten connections beside the viewer
-        async with contextlib.AsyncExitStack() as stack:
-            first = [await stack.enter_async_context(raw_connection(server.port)) for _ in range(5)]
-            await until(lambda: server.connections == 6)
-            for _ in range(10):
-                reader, _ = await stack.enter_async_context(raw_connection(server.port))
-                assert await ended(reader)
-            assert server.connections == 6
-            await polite.request("counters")
-            first[0][1].close()
-            await until(lambda: server.connections == 5)
-            async with open_client(server.url) as second:
-                await second.request("counters")
+        contextlib.AsyncExitStack() as stack,
+    ):
+        first = [await stack.enter_async_context(raw_connection(server.port)) for _ in range(5)]
+        await until(lambda: server.connections == 6)
+        for _ in range(10):
+            reader, _ = await stack.enter_async_context(raw_connection(server.port))
+            assert await ended(reader)
+        assert server.connections == 6
+        await polite.request("counters")
+        first[0][1].close()
+        await until(lambda: server.connections == 5)
+        async with open_client(server.url) as second:
+            await second.request("counters")
     async with served(FakeDevice(), scene(), limits=Limits(new_connections_per_address_and_second=1)) as server:
         closed = 0
         for _ in range(10):
