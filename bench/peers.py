@@ -174,7 +174,7 @@ def plot(runs: list[Run], file: Path) -> None:
 
 def main() -> None:
     parser = options_of(__doc__)
-    parser.add_argument("--runs", type=int, default=3)
+    parser.add_argument("--runs", type=int, default=5)
     parser.add_argument("--seconds", type=float, default=90)
     parser.add_argument("--gigabytes", type=float, default=8)
     parser.add_argument("--depths", type=int, nargs="*", default=OUR_DEPTHS, help="of those in the table")
