@@ -46,7 +46,7 @@ LITERALS = re.compile(
 
 OTHER_BITS = {
     "board/designs/simulation/simulation.cpp": r"bits = word & 0xFF",  # a TMDS symbol
-    "voxelize/src/mesh/closed_surface.h": r"v \^ v >> 31",  # a hash
+    "voxelize/src/faces/closed_surface.h": r"v \^ v >> 31",  # a hash
     "board/designs/serial_device.py": r"_board\(\) *>> 31",  # a register that tells whether the board plays
     "serve/legacy_server.py": r"words\[6\]& 0xFF",  # the background of the original's request
 }

@@ -48,8 +48,7 @@ class Voxelized(NamedTuple):
     octant_materials: NDArray[np.uint8]
     object_voxels: NDArray[np.int64]
     object_modes: NDArray[np.uint8]
-    object_flipped: NDArray[np.int64]
-    object_mostly_filled: NDArray[np.uint8]
+    object_notes: NDArray[np.int64]
     seconds: dict[str, float]
 
 def voxelize(
@@ -105,8 +104,7 @@ def placed_vertices(positions: NDArray[np.float64], triangles: NDArray[np.int32]
 def object_warnings(
     voxels: NDArray[np.int64],
     modes: NDArray[np.uint8],
-    flipped: NDArray[np.int64],
-    mostly_filled: NDArray[np.uint8],
+    notes: NDArray[np.int64],
     names: Sequence[str],
     reported: Sequence[bool],
 ) -> list[tuple[str, str, int]]: ...

@@ -112,8 +112,7 @@ class SceneParts:
         found = _native.object_warnings(
             result.object_voxels,
             result.object_modes,
-            result.object_flipped,
-            result.object_mostly_filled,
+            result.object_notes,
             [item.name for item in self.scene.objects],
             shown,
         )

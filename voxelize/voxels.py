@@ -84,7 +84,7 @@ class ObjectMode(StrEnum):
     """Some of it stands open, like a room without a front, and has a shell alone; the rest is as in `WINDING`."""
 
     TURNED = "turned"
-    """It closes; connected components that were inside out were flipped, walls of cavities excepted."""
+    """It closes; faces or connected components that were inside out were turned, walls of cavities excepted."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -145,8 +145,8 @@ def test_a_side_wound_against_the_others_is_no_opening():
     mesh, side = room()
     turned = Mesh(side.positions, side.triangles[:, ::-1].copy(), side.materials)
     result = voxelize(one_object(joined(mesh, turned)), GRID)
-    assert result.objects[0].mode == "winding"
-    assert dense(result.voxels)[7:14, 2:14, 2:14].all()
+    assert result.objects[0].mode == "turned"
+    assert dense(result.voxels)[2:14, 2:14, 2:14].all()
 
 
 def test_a_lid_closes_a_box():

@@ -110,12 +110,8 @@ void report(const voxelize::SparseVoxels& voxels) {
     for (const Object& object : scene.objects)
         names.push_back(object.name);
     const std::vector<uint8_t> reported(count, 1);
-    result.warnings = voxelize::object_warnings({result.object_voxels,
-                                                 result.object_modes,
-                                                 {voxels.object_flipped.data(), count},
-                                                 {voxels.object_mostly_filled.data(), count},
-                                                 names,
-                                                 reported});
+    result.warnings = voxelize::object_warnings(
+        {result.object_voxels, result.object_modes, {voxels.object_notes.data(), count}, names, reported});
 }
 
 /// The voxelizer's view of a mesh, and the arrays that it needs.

@@ -132,7 +132,7 @@ uint64_t fingerprint(const SparseVoxels& voxels) {
     add(voxels.octant_materials);
     add(voxels.object_voxels);
     add(voxels.object_modes);
-    add(voxels.object_flipped);
+    add(voxels.object_notes);
     return hash;
 }
 

@@ -155,8 +155,7 @@ nb::object voxelized_of(SparseVoxels& out) {
         seconds[stage] = value;
     return voxelized(take(out.brick_codes), take(out.brick_masks), take(out.brick_materials), take(out.brick_rows),
                      take(out.cells), take(out.octant_codes), take(out.octant_levels), take(out.octant_materials),
-                     take(out.object_voxels), take(out.object_modes), take(out.object_flipped),
-                     take(out.object_mostly_filled), seconds);
+                     take(out.object_voxels), take(out.object_modes), take(out.object_notes), seconds);
 }
 
 void require_threads(int threads) { require(threads >= 0 && threads <= 1024, "threads must be 0 … 1024"); }
@@ -344,11 +343,11 @@ NB_MODULE(_native, m) {
     NamedTuple(m, "MeshArrays",
                {"positions", "triangles", "materials", "raster_sizes", "raster_coordinates", "raster_materials"},
                "A mesh as voxelize() takes it.");
-    voxelized = NamedTuple(m, "Voxelized",
-                           {"brick_codes", "brick_masks", "brick_materials", "brick_rows", "cells", "octant_codes",
-                            "octant_levels", "octant_materials", "object_voxels", "object_modes", "object_flipped",
-                            "object_mostly_filled", "seconds"},
-                           "What voxelize() returns.");
+    voxelized =
+        NamedTuple(m, "Voxelized",
+                   {"brick_codes", "brick_masks", "brick_materials", "brick_rows", "cells", "octant_codes",
+                    "octant_levels", "octant_materials", "object_voxels", "object_modes", "object_notes", "seconds"},
+                   "What voxelize() returns.");
     voxel_block = NamedTuple(m, "VoxelBlock",
                              {"brick_codes", "brick_masks", "brick_materials", "brick_rows", "cells", "octant_codes",
                               "octant_levels", "octant_materials", "object_tallies"},

@@ -73,17 +73,18 @@ nb::object placed_vertices(const InputOf<double>& positions, const InputOf<int32
 }
 
 std::vector<std::tuple<std::string, std::string, int64_t>>
-warnings_of(const InputOf<int64_t>& voxels, const InputOf<uint8_t>& modes, const InputOf<int64_t>& flipped,
-            const InputOf<uint8_t>& mostly_filled, const std::vector<std::string>& names,
-            const std::vector<bool>& reported) {
+warnings_of(const InputOf<int64_t>& voxels, const InputOf<uint8_t>& modes, const InputOf<int64_t>& notes,
+            const std::vector<std::string>& names, const std::vector<bool>& reported) {
     const size_t count = names.size();
-    if (voxels.size() != count || modes.size() != count || flipped.size() != count || mostly_filled.size() != count ||
+    if (voxels.size() != count || modes.size() != count || notes.size() != kObjectNotes * count ||
         reported.size() != count)
         throw nb::value_error("the arrays of the objects must have one length");
     const std::vector<uint8_t> flags(reported.begin(), reported.end());
+    std::vector<ObjectNotes> rows(count);
+    for (size_t i = 0; i < notes.size(); ++i)
+        rows[i / kObjectNotes][i % kObjectNotes] = notes.data()[i];
     std::vector<std::tuple<std::string, std::string, int64_t>> found;
-    for (const ObjectWarning& one :
-         object_warnings({span_of(voxels), span_of(modes), span_of(flipped), span_of(mostly_filled), names, flags}))
+    for (const ObjectWarning& one : object_warnings({span_of(voxels), span_of(modes), rows, names, flags}))
         found.emplace_back(one.kind, one.message, one.count);
     return found;
 }
@@ -120,9 +121,8 @@ void bind_scene(nb::module_& m) {
           "The longest side of a box. UnfitSceneError: it overflows.");
     m.def("placed_vertices", &placed_vertices, nb::arg("positions"), nb::arg("triangles"),
           "Positions (V, 3) float64 with those that no triangle (T, 3) uses moved to one that is used.");
-    m.def("object_warnings", &warnings_of, nb::arg("voxels"), nb::arg("modes"), nb::arg("flipped"),
-          nb::arg("mostly_filled"), nb::arg("names"), nb::arg("reported"),
-          "What to tell of a scene's voxels: kind, message and count each. Arguments by object.");
+    m.def("object_warnings", &warnings_of, nb::arg("voxels"), nb::arg("modes"), nb::arg("notes"), nb::arg("names"),
+          nb::arg("reported"), "What to tell of a scene's voxels: kind, message and count each. Arguments by object.");
     nb::class_<MaterialTable>(m, "MaterialTable", "Materials under construction; entry 0 is empty space.")
         .def(
             "__init__",

@@ -31,6 +31,16 @@ struct VoxelsView {
     const std::uint8_t* octant_materials;
 };
 
+/// What an object's author should know, by number.
+enum ObjectNote : std::size_t {
+    kFlippedComponents, // connected components that were inside out
+    kTurnedFaces,       // triangles that were wound against those beside them
+    kOneSidedPieces,    // that cannot be wound consistently, like a Klein bottle
+    kMostlyFilled,      // 1: its open parts have more inside than shell
+    kObjectNotes
+};
+using ObjectNotes = std::array<std::int64_t, kObjectNotes>; // how often each was met
+
 /// The voxels of a scene, and what became of each of its objects.
 struct SparseVoxels {
     unsigned depth = 0;
@@ -42,10 +52,9 @@ struct SparseVoxels {
     LargeVector<std::uint64_t> octant_codes;
     LargeVector<std::uint8_t> octant_levels;
     LargeVector<std::uint8_t> octant_materials;
-    LargeVector<std::int64_t> object_voxels;        // by object: voxels that belong to it
-    LargeVector<std::uint8_t> object_modes;         // by object: ObjectMode
-    LargeVector<std::int64_t> object_flipped;       // by object: connected components that were flipped
-    LargeVector<std::uint8_t> object_mostly_filled; // by object: its open parts have more inside than shell
+    LargeVector<std::int64_t> object_voxels; // by object: voxels that belong to it
+    LargeVector<std::uint8_t> object_modes;  // by object: ObjectMode
+    LargeVector<ObjectNotes> object_notes;   // by object
     StageSeconds seconds;
 
     /// Makes all lists of voxels empty.

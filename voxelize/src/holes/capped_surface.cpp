@@ -7,8 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <tuple>
 
 namespace voxrt::voxelize {
 namespace {
@@ -29,54 +27,26 @@ Point area(const Point& a, const Point& b, const Point& c) {
 }
 double length(const Point& a) { return std::hypot(a.x, a.y, a.z); }
 
-/// For each vertex the first one at the same place.
-std::vector<uint32_t> weld(const std::vector<Point>& points) {
-    std::vector<uint32_t> order(points.size()), first(points.size());
-    std::iota(order.begin(), order.end(), 0u);
-    WorkCounter& work = WorkCounter::current();
-    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-        work.count(1);
-        const Point &p = points[a], &q = points[b];
-        return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
-    });
-    for (size_t i = 0; i < order.size(); ++i) {
-        const bool again = i > 0 && points[order[i]] == points[order[i - 1]];
-        first[order[i]] = again ? first[order[i - 1]] : order[i];
-    }
-    return first;
+/// Whether a face belongs to the surface whose holes are sought.
+bool is_sought(const Orientation* orientation, size_t face) {
+    return orientation == nullptr || !orientation->is_settled(face);
 }
 
 /// The boundary edges, sorted by first vertex.
-std::vector<BoundaryEdge> boundary_of(const MeshView& mesh, const std::vector<uint32_t>& welded) {
-    struct Edge {
-        uint32_t low, high;
-        int direction;
-    };
-    std::vector<Edge> edges;
-    edges.reserve(mesh.triangles.size());
-    for (size_t t = 0; t < mesh.triangle_count(); ++t)
-        for (int i = 0; i < 3; ++i) {
-            const uint32_t a = welded[mesh.triangles[3 * t + i]], b = welded[mesh.triangles[3 * t + (i + 1) % 3]];
-            if (a != b)
-                edges.push_back({std::min(a, b), std::max(a, b), a < b ? 1 : -1});
-        }
-    WorkCounter& work = WorkCounter::current();
-    std::sort(edges.begin(), edges.end(), [&work](const Edge& a, const Edge& b) {
-        work.count(1);
-        return a.low != b.low ? a.low < b.low : a.high < b.high;
-    });
+std::vector<BoundaryEdge> boundary_of(const MeshEdges& edges, const Orientation* orientation) {
     std::vector<BoundaryEdge> boundary;
-    for (size_t i = 0; i < edges.size();) {
-        int sum = 0;
-        size_t j = i;
-        for (; j < edges.size() && edges[j].low == edges[i].low && edges[j].high == edges[i].high; ++j)
-            sum += edges[j].direction;
+    edges.each([&](uint32_t low, std::span<const EdgeUse> uses) {
+        int sum = 0, count = 0;
+        for (const EdgeUse& use : uses)
+            if (is_sought(orientation, use.face)) {
+                sum += use.is_upwards == (orientation != nullptr && orientation->is_reversed(use.face)) ? -1 : 1;
+                ++count;
+            }
         if (sum > 0)
-            boundary.push_back({edges[i].low, edges[i].high, sum, (j - i) % 2 == 0});
+            boundary.push_back({low, uses[0].high, sum, count % 2 == 0});
         else if (sum < 0)
-            boundary.push_back({edges[i].high, edges[i].low, -sum, (j - i) % 2 == 0});
-        i = j;
-    }
+            boundary.push_back({uses[0].high, low, -sum, count % 2 == 0});
+    });
     std::sort(boundary.begin(), boundary.end(), [](const BoundaryEdge& a, const BoundaryEdge& b) {
         return a.from != b.from ? a.from < b.from : a.to < b.to;
     });
@@ -86,20 +56,18 @@ std::vector<BoundaryEdge> boundary_of(const MeshView& mesh, const std::vector<ui
 /// A mesh with its boundary loops, by connected component.
 class Components {
 public:
-    Components(const MeshView& mesh, const std::vector<Point>& points, Fill fill)
-        : automatic_(fill == Fill::automatic), mesh_(mesh), points_(points), welded_(weld(points)),
-          sets_(points.size()), loops_(cut_into_loops(boundary_of(mesh, welded_), points.size())),
+    Components(const MeshEdges& edges, const Orientation* orientation, const std::vector<Point>& points, Fill fill)
+        : automatic_(fill == Fill::automatic), edges_(edges), orientation_(orientation), points_(points),
+          sets_(points.size()), loops_(cut_into_loops(boundary_of(edges, orientation), points.size())),
           area_(points.size(), 0), opening_(points.size(), 0), openings_(points.size(), 0) {
-        for (size_t t = 0; t < mesh.triangle_count(); ++t) {
-            const auto [a, b, c] = corners(t);
+        each_face([&](const Corners& face) {
             count_work(5);
-            sets_.merge(a, b);
-            sets_.merge(a, c);
-        }
-        for (size_t t = 0; t < mesh.triangle_count(); ++t) {
-            const auto [a, b, c] = corners(t);
-            area_[sets_.find(a)] += length(area(points[a], points[b], points[c]));
-        }
+            sets_.merge(face[0], face[1]);
+            sets_.merge(face[0], face[2]);
+        });
+        each_face([&](const Corners& face) {
+            area_[sets_.find(face[0])] += length(area(points[face[0]], points[face[1]], points[face[2]]));
+        });
         for (const auto& [loop, inconsistent] : loops_) {
             Point sum{0, 0, 0};
             for (size_t i = 2; i < loop.size(); ++i) {
@@ -113,10 +81,6 @@ public:
         }
     }
 
-    std::array<uint32_t, 3> corners(size_t t) const {
-        const int32_t* corner = mesh_.triangles.data() + 3 * t;
-        return {welded_[corner[0]], welded_[corner[1]], welded_[corner[2]]};
-    }
     const std::vector<BoundaryLoop>& loops() const { return loops_; }
 
     /// All loops of the component of a vertex, closed, by its area.
@@ -135,18 +99,20 @@ public:
     /// How well all components that do not close enclose together, in the box of those with large openings.
     EnclosureProbe::Enclosure measure_enclosure() {
         Point low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
-        for (size_t t = 0; t < mesh_.triangle_count(); ++t)
-            for (uint32_t v : corners(t))
+        each_face([&](const Corners& face) {
+            for (const uint32_t v : face)
                 if (is_open(v)) {
                     const Point& p = points_[v];
                     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
                     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
                 }
+        });
         EnclosureProbe probes(low, high);
-        auto add = [&](const std::array<uint32_t, 3>& t) { probes.add(points_[t[0]], points_[t[1]], points_[t[2]]); };
-        for (size_t t = 0; t < mesh_.triangle_count(); ++t)
-            if (opening_[sets_.find(corners(t)[0])] > 0)
-                add(corners(t));
+        auto add = [&](const Corners& t) { probes.add(points_[t[0]], points_[t[1]], points_[t[2]]); };
+        each_face([&](const Corners& face) {
+            if (opening_[sets_.find(face[0])] > 0)
+                add(face);
+        });
         std::vector<std::array<uint32_t, 3>> caps;
         for (const auto& loop : loops_)
             close_loop(loop.vertices, caps);
@@ -159,10 +125,17 @@ public:
     }
 
 private:
+    /// Calls visit(corners) for each face of the surface whose holes are sought.
+    template <class Visit> void each_face(Visit&& visit) const {
+        for (size_t t = 0; t < edges_.face_count(); ++t)
+            if (is_sought(orientation_, t))
+                visit(edges_.corners(t));
+    }
+
     bool automatic_;
-    const MeshView& mesh_;
+    const MeshEdges& edges_;
+    const Orientation* orientation_;
     const std::vector<Point>& points_;
-    std::vector<uint32_t> welded_;
     DisjointSets sets_;
     std::vector<BoundaryLoop> loops_;
     // By component: area of the surface, of its largest loop closed, of all its loops closed.
@@ -171,8 +144,9 @@ private:
 
 } // namespace
 
-HoleCaps find_hole_caps(const MeshView& mesh, const std::vector<Point>& points, Fill fill) {
-    Components components(mesh, points, fill);
+HoleCaps find_hole_caps(const MeshEdges& edges, const Orientation* orientation, const std::vector<Point>& points,
+                        Fill fill) {
+    Components components(edges, orientation, points, fill);
     HoleCaps found;
     bool any_open = false;
     for (const auto& loop : components.loops())
@@ -181,9 +155,9 @@ HoleCaps find_hole_caps(const MeshView& mesh, const std::vector<Point>& points, 
         const EnclosureProbe::Enclosure enclosure = components.measure_enclosure();
         if (enclosure.mean < (fill == Fill::automatic ? kTightTogether : kClosedTogether)) {
             found.has_open_enclosure = enclosure.highest > kEnclosure;
-            found.shell_only.resize(mesh.triangle_count());
-            for (size_t t = 0; t < mesh.triangle_count(); ++t)
-                found.shell_only[t] = components.is_open(components.corners(t)[0]);
+            found.shell_only.resize(edges.face_count());
+            for (size_t t = 0; t < edges.face_count(); ++t)
+                found.shell_only[t] = is_sought(orientation, t) && components.is_open(edges.corners(t)[0]);
         }
     }
     for (const auto& loop : components.loops())

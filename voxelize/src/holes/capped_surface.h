@@ -12,8 +12,8 @@
 // enclose together must be tighter. A scan with holes stays below that share.
 #pragma once
 
+#include "../faces/orientation.h"
 #include "../scene/fill.h"
-#include "../scene/parts.h"
 #include "cap_winding.h"
 
 #include <memory>
@@ -28,8 +28,9 @@ struct HoleCaps {
     bool has_open_enclosure = false; // an open component encloses space, as a room without a front does
 };
 
-/// `points`: a position per vertex; vertices at one position count as one. Cost: sorting the edges.
-HoleCaps find_hole_caps(const MeshView& mesh, const std::vector<Point>& points, Fill fill);
+/// `points`: a position per vertex. `orientation`: null where all faces are as the file says. Linear in the faces.
+HoleCaps find_hole_caps(const MeshEdges& edges, const Orientation* orientation, const std::vector<Point>& points,
+                        Fill fill);
 
 /// A mesh part and its caps in grid space.
 struct CappedSurface {

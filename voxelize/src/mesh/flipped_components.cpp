@@ -1,10 +1,12 @@
 #include "flipped_components.h"
 
+#include "../faces/closed_surface.h"
+#include "../faces/exact_predicates.h"
 #include "../work/disjoint_sets.h"
-#include "closed_surface.h"
 #include "triangle_bvh.h"
 
 #include <bit>
+#include <unordered_set>
 
 namespace voxrt::voxelize {
 namespace {
@@ -12,18 +14,6 @@ namespace {
 constexpr uint32_t kNoComponent = 0xFFFF'FFFF, kNoVertex = 0xFFFF'FFFF;
 constexpr size_t kFewComponents = 512; // up to so many are compared pair by pair
 constexpr size_t kBatch = 16;          // triangles per query
-
-using Corners = std::array<uint32_t, 3>;
-
-int sign_of(int128 v) { return v < 0 ? -1 : v > 0; }
-
-/// Six times the volume of a tetrahedron: on which side of plane abc, seen against its normal, d lies.
-int128 volume6_of(const Vertex& a, const Vertex& b, const Vertex& c, const Vertex& d) {
-    const int128 ax = int128(a.x) - d.x, ay = int128(a.y) - d.y, az = int128(a.z) - d.z;
-    const int128 bx = int128(b.x) - d.x, by = int128(b.y) - d.y, bz = int128(b.z) - d.z;
-    const int128 cx = int128(c.x) - d.x, cy = int128(c.y) - d.y, cz = int128(c.z) - d.z;
-    return ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx);
-}
 
 /// Seen from above, on which side of uv q lies. A q on the line is moved by an infinitesimal along x, then y
 /// (simulation of simplicity: Edelsbrunner and Muecke, 1990).
@@ -67,8 +57,9 @@ struct Component {
 /// A surface and what closes it, as connected components.
 class ClosedComponents {
 public:
-    ClosedComponents(const MeshView& mesh, const std::vector<Vertex>& vertices, const HoleCaps* caps)
-        : mesh_(mesh), vertices_(vertices), caps_(caps), sets_(vertices.size()) {
+    ClosedComponents(const MeshView& mesh, const std::vector<Vertex>& vertices, const Orientation* orientation,
+                     const HoleCaps* caps)
+        : mesh_(mesh), vertices_(vertices), orientation_(orientation), caps_(caps), sets_(vertices.size()) {
         size_t joins = 0;
         for (size_t t = 0; t < count(); ++t)
             if (is_closed_part(t)) {
@@ -124,6 +115,11 @@ public:
         return in && out;
     }
 
+    bool has_flat() const {
+        return std::any_of(components_.begin(), components_.end(),
+                           [](const Component& component) { return component.volume6 == 0; });
+    }
+
     /// Decides the orientation of all components.
     void orient() {
         std::vector<std::pair<TriangleBox, uint32_t>> boxes;
@@ -161,19 +157,40 @@ public:
         }
     }
 
-    std::shared_ptr<const FlippedComponents> flipped() const {
-        auto found = std::make_shared<FlippedComponents>();
+    /// The orientation with those components flipped; null where none is, or all are.
+    std::shared_ptr<const Orientation> flipped() const {
+        auto found =
+            orientation_ != nullptr ? std::make_shared<Orientation>(*orientation_) : std::make_shared<Orientation>();
         for (const Component& component : components_)
-            found->count += component.orientation < 0;
-        if (found->count == 0 || found->count == components_.size())
+            found->components += component.orientation < 0;
+        if (found->components == 0 || found->components == components_.size())
             return nullptr;
-        found->triangles.resize(mesh_.triangle_count());
+        found->faces.resize(mesh_.triangle_count());
         for (size_t t = 0; t < mesh_.triangle_count(); ++t)
-            found->triangles[t] = is_closed_part(t) && components_[component_of_[t]].orientation < 0;
+            if (is_closed_part(t) && components_[component_of_[t]].orientation < 0)
+                found->faces[t] ^= Orientation::kReversed;
+        if (orientation_ != nullptr)
+            flip_uncounted(*found);
         return found;
     }
 
 private:
+    /// Flips faces that do not count with the components on which they lie.
+    void flip_uncounted(Orientation& orientation) const {
+        std::unordered_set<uint64_t> flipped; // positions
+        for (const Component& component : components_)
+            if (component.orientation < 0)
+                for (const uint32_t v : component.vertices)
+                    flipped.insert(vertex_key(vertices_[v]));
+        for (size_t t = 0; t < mesh_.triangle_count(); ++t)
+            if (orientation.is_uncounted(t)) {
+                const Corners c = corners(t);
+                if (std::all_of(c.begin(), c.end(),
+                                [&](uint32_t v) { return flipped.contains(vertex_key(vertices_[v])); }))
+                    orientation.faces[t] ^= Orientation::kReversed;
+            }
+    }
+
     /// A component that lies around another, and its winding number there before flipping.
     struct Enclosing {
         uint32_t component;
@@ -184,14 +201,17 @@ private:
     size_t count() const { return mesh_.triangle_count() + (caps_ != nullptr ? caps_->triangles.size() : 0); }
     /// Whether a triangle belongs to what closes: not to an open component.
     bool is_closed_part(size_t t) const {
-        return t >= mesh_.triangle_count() || caps_ == nullptr || caps_->shell_only.empty() ||
-               caps_->shell_only[t] == 0;
+        if (t >= mesh_.triangle_count())
+            return true;
+        return (orientation_ == nullptr || !orientation_->is_uncounted(t)) &&
+               (caps_ == nullptr || caps_->shell_only.empty() || caps_->shell_only[t] == 0);
     }
     Corners corners(size_t t) const {
         if (t >= mesh_.triangle_count())
             return caps_->triangles[t - mesh_.triangle_count()];
         const int32_t* c = mesh_.triangles.data() + 3 * t;
-        return {uint32_t(c[0]), uint32_t(c[1]), uint32_t(c[2])};
+        const Corners corners{uint32_t(c[0]), uint32_t(c[1]), uint32_t(c[2])};
+        return orientation_ != nullptr ? orientation_->turned_corners(t, corners) : corners;
     }
     /// False where the component's box contains no other component's box.
     bool may_enclose(uint32_t own) const {
@@ -213,6 +233,8 @@ private:
     void weld() {
         std::vector<uint64_t> sums(vertices_.size(), 0);
         for (size_t t = 0; t < mesh_.triangle_count(); ++t) {
+            if (!is_closed_part(t))
+                continue;
             count_work(5);
             const auto [a, b, c] = corners(t);
             sums[sets_.find(a)] +=
@@ -322,6 +344,7 @@ private:
 
     const MeshView& mesh_;
     const std::vector<Vertex>& vertices_;
+    const Orientation* orientation_;
     const HoleCaps* caps_;
     DisjointSets sets_;
     bool is_one_;
@@ -332,16 +355,18 @@ private:
 
 } // namespace
 
-std::shared_ptr<const FlippedComponents>
-find_flipped_components(const MeshView& mesh, const std::vector<Vertex>& vertices, const HoleCaps* caps) {
-    ClosedComponents components(mesh, vertices, caps);
+FlippedComponents flip_components(const MeshView& mesh, const std::vector<Vertex>& vertices,
+                                  std::shared_ptr<const Orientation> orientation, const HoleCaps* caps) {
+    ClosedComponents components(mesh, vertices, orientation.get(), caps);
     if (components.is_one())
-        return nullptr;
+        return {orientation, false};
     components.split();
+    const bool has_flat = components.has_flat();
     if (!components.are_mixed())
-        return nullptr;
+        return {orientation, has_flat};
     components.orient();
-    return components.flipped();
+    auto flipped = components.flipped();
+    return {flipped ? flipped : orientation, has_flat};
 }
 
 } // namespace voxrt::voxelize

@@ -14,18 +14,17 @@
 
 namespace voxrt::voxelize {
 
-struct FlippedComponents {
-    std::vector<uint8_t> triangles; // by triangle of the mesh: 1 where its orientation is to be reversed
-    uint32_t count = 0;             // components
-    bool is_flipped(size_t triangle) const { return !triangles.empty() && triangles[triangle] != 0; }
-};
-
-/// Null where no component is to be flipped, or all are: then the surface as a whole is inverted.
+/// Completes an orientation. Leaves it as it is where no component is to be flipped, or all are: then the surface as a
+/// whole is inverted.
 ///
 /// `vertices`: a position per vertex, in grid space or in any finer lattice. `caps`: what closes the surface, or null
 /// where it closes by itself. Components with caps are never flipped, nor are others beside a capped one that is inside
 /// out.
-std::shared_ptr<const FlippedComponents>
-find_flipped_components(const MeshView& mesh, const std::vector<Vertex>& vertices, const HoleCaps* caps);
+struct FlippedComponents {
+    std::shared_ptr<const Orientation> orientation;
+    bool has_flat; // of several components one has no volume
+};
+FlippedComponents flip_components(const MeshView& mesh, const std::vector<Vertex>& vertices,
+                                  std::shared_ptr<const Orientation> orientation, const HoleCaps* caps);
 
 } // namespace voxrt::voxelize

@@ -1,7 +1,9 @@
 #include "mesh_analysis.h"
 
+#include "../faces/closed_surface.h"
 #include "../work/interrupt.h"
-#include "closed_surface.h"
+
+#include <optional>
 
 namespace voxrt::voxelize {
 namespace {
@@ -41,11 +43,81 @@ double determinant(const double* f) {
            f[2] * (f[4] * f[9] - f[5] * f[8]);
 }
 
-std::shared_ptr<const HoleCaps> caps_of(const MeshView& mesh, const std::vector<Vertex>& vertices, Fill fill) {
+std::vector<Point> points_of(const std::vector<Vertex>& vertices) {
     std::vector<Point> points(vertices.size());
     for (size_t v = 0; v < points.size(); ++v)
         points[v] = in_voxels(vertices[v]);
-    return std::make_shared<const HoleCaps>(find_hole_caps(mesh, points, fill));
+    return points;
+}
+
+/// What the faces of a mesh enclose.
+struct Enclosed {
+    bool closed;
+    double volume6; // six times the signed volume
+    std::shared_ptr<const HoleCaps> hole_caps;
+    std::shared_ptr<const Orientation> orientation;
+};
+
+/// Six times the signed volume of what counts, as it counts.
+double volume6_of(const MeshView& mesh, const std::vector<Point>& points, const Orientation& orientation) {
+    double sum = 0;
+    const Point& origin = points[mesh.triangles[0]];
+    for (size_t t = 0; t < mesh.triangle_count(); ++t)
+        if (!orientation.is_uncounted(t)) {
+            const double own = volume6(points[mesh.triangles[3 * t]], points[mesh.triangles[3 * t + 1]],
+                                       points[mesh.triangles[3 * t + 2]], origin);
+            sum += orientation.is_reversed(t) ? -own : own;
+        }
+    return sum;
+}
+
+/// Whether the faces that count close, as they count.
+bool closes(const MeshEdges& edges, const Orientation& orientation) {
+    bool closed = true;
+    edges.each([&](uint32_t, std::span<const EdgeUse> uses) {
+        int sum = 0;
+        for (const EdgeUse& use : uses)
+            if (!orientation.is_uncounted(use.face))
+                sum += use.is_upwards == orientation.is_reversed(use.face) ? -1 : 1;
+        closed = closed && sum == 0;
+    });
+    return closed;
+}
+
+/// `positions`: as they are welded. `box`: the volume of their box. `vertices`: the same in a lattice. `points()`: the
+/// same, to measure.
+template <class Position, class Points>
+Enclosed find_enclosed(const MeshView& mesh, const TriangleSums& sums, double box,
+                       const std::vector<Position>& positions, const std::vector<uint64_t>& keys,
+                       const std::vector<Vertex>& vertices, Points&& points, Fill fill) {
+    Enclosed found{sums.boundary == 0, sums.volume6, nullptr, nullptr};
+    std::optional<MeshEdges> edges;
+    const auto orient = [&](bool flat) {
+        edges.emplace(mesh, weld(positions));
+        found.orientation = find_orientation(*edges, vertices, flat);
+        if (found.orientation) {
+            found.closed = closes(*edges, *found.orientation);
+            found.volume6 = volume6_of(mesh, points(), *found.orientation);
+        }
+    };
+    const auto flip = [&] {
+        FlippedComponents flipped = flip_components(mesh, vertices, found.orientation, found.hole_caps.get());
+        found.orientation = std::move(flipped.orientation);
+        return flipped.has_flat;
+    };
+    const bool flat = found.closed && std::abs(sums.volume6) < 1e-6 * box;
+    // Where it is not filled, an open surface decides nothing but the layers of faces between voxels.
+    if (found.closed ? flat || has_repeated_faces(mesh, keys) : fills(fill) || sums.odd_edges == 0)
+        orient(flat);
+    if (!found.closed && fills(fill))
+        found.hole_caps =
+            std::make_shared<const HoleCaps>(find_hole_caps(*edges, found.orientation.get(), points(), fill));
+    if ((found.closed || fills(fill)) && flip() && !edges) {
+        found.orientation = nullptr;
+        orient(true);
+        flip();
+    }
+    return found;
 }
 
 } // namespace
@@ -57,7 +129,9 @@ TriangleSums sum_triangles(const MeshView& mesh, const std::vector<Vertex>& vert
     for (size_t t = from; t < to; ++t) {
         const int32_t* corner = mesh.triangles.data() + 3 * t;
         const Vertex &a = vertices[corner[0]], &b = vertices[corner[1]], &c = vertices[corner[2]];
-        sums.boundary += boundary_key(vertex_key(a), vertex_key(b), vertex_key(c));
+        const uint64_t keys[3] = {vertex_key(a), vertex_key(b), vertex_key(c)};
+        sums.boundary += boundary_key(keys[0], keys[1], keys[2]);
+        sums.odd_edges ^= undirected_key(keys[0], keys[1], keys[2]);
         sums.volume6 += volume6(a, b, c, origin);
         for (const Vertex* v : {&a, &b, &c})
             sums.bounds.add(*v);
@@ -78,24 +152,26 @@ SharedMesh analyze_shared(const MeshView& mesh, uint32_t object, Fill fill) {
     }
     shared.low = shared.high = points[mesh.triangles[0]];
     const Point& o = points[mesh.triangles[0]];
-    uint64_t boundary = 0;
+    TriangleSums sums;
     for (size_t t = 0; t < mesh.triangle_count(); ++t) {
         count_work(5);
         const int32_t* corner = mesh.triangles.data() + 3 * t;
-        boundary += boundary_key(keys[corner[0]], keys[corner[1]], keys[corner[2]]);
-        shared.volume6 += volume6(points[corner[0]], points[corner[1]], points[corner[2]], o);
+        sums.boundary += boundary_key(keys[corner[0]], keys[corner[1]], keys[corner[2]]);
+        sums.odd_edges ^= undirected_key(keys[corner[0]], keys[corner[1]], keys[corner[2]]);
+        sums.volume6 += volume6(points[corner[0]], points[corner[1]], points[corner[2]], o);
         for (int i = 0; i < 3; ++i) {
             const Point& p = points[corner[i]];
             shared.low = {std::min(shared.low.x, p.x), std::min(shared.low.y, p.y), std::min(shared.low.z, p.z)};
             shared.high = {std::max(shared.high.x, p.x), std::max(shared.high.y, p.y), std::max(shared.high.z, p.z)};
         }
     }
-    shared.closed = boundary == 0;
-    if (fills(fill) && !shared.closed)
-        shared.hole_caps = std::make_shared<const HoleCaps>(find_hole_caps(mesh, points, fill));
-    if (shared.closed || fills(fill))
-        shared.flipped =
-            find_flipped_components(mesh, in_lattice(points, shared.low, shared.high), shared.hole_caps.get());
+    const double box = (shared.high.x - shared.low.x) * (shared.high.y - shared.low.y) * (shared.high.z - shared.low.z);
+    const Enclosed found = find_enclosed(
+        mesh, sums, box, points, keys, in_lattice(points, shared.low, shared.high), [&] { return points; }, fill);
+    shared.closed = found.closed;
+    shared.volume6 = found.volume6;
+    shared.hole_caps = found.hole_caps;
+    shared.orientation = found.orientation;
     return shared;
 }
 
@@ -109,24 +185,30 @@ TriangleSums instance_sums(const SharedMesh& shared, const PartView& part) {
 
 void analyze_part(MeshAnalysis& analysis, const PartView& part, const TriangleSums& sums, const SharedMesh* shared,
                   Fill fill) {
-    analysis.closed = sums.boundary == 0;
-    analysis.inverted = analysis.closed && sums.volume6 < 0;
+    Enclosed found;
+    if (shared != nullptr) {
+        found = {shared->closed, sums.volume6, shared->hole_caps, shared->orientation};
+    } else {
+        std::vector<uint64_t> keys(analysis.vertices.size());
+        for (size_t v = 0; v < keys.size(); ++v)
+            keys[v] = vertex_key(analysis.vertices[v]);
+        double box = 1;
+        for (int i = 0; i < 3; ++i)
+            box *= double(sums.bounds.max[i] - sums.bounds.min[i]);
+        found = find_enclosed(
+            *part.mesh, sums, box, analysis.vertices, keys, analysis.vertices,
+            [&] { return points_of(analysis.vertices); }, fill);
+    }
+    analysis.closed = found.closed;
+    analysis.inverted = found.closed && found.volume6 < 0;
+    if (found.closed && found.orientation && found.orientation->components > 0)
+        analysis.inverted = shared != nullptr && determinant(part.frame) < 0;
+    analysis.hole_caps = found.hole_caps;
+    analysis.orientation = found.orientation;
     for (int i = 0; i < 3; ++i) {
         analysis.box.low[i] = voxel_floor(sums.bounds.min[i]);
         analysis.box.high[i] = voxel_below(sums.bounds.max[i]);
     }
-    if (!analysis.closed && !fills(fill))
-        return;
-    if (!analysis.closed) {
-        analysis.hole_caps = shared != nullptr ? shared->hole_caps : nullptr;
-        if (!analysis.hole_caps)
-            analysis.hole_caps = caps_of(*part.mesh, analysis.vertices, fill);
-    }
-    analysis.flipped = shared != nullptr
-                           ? shared->flipped
-                           : find_flipped_components(*part.mesh, analysis.vertices, analysis.hole_caps.get());
-    if (analysis.closed && analysis.flipped)
-        analysis.inverted = shared != nullptr && determinant(part.frame) < 0;
 }
 
 } // namespace voxrt::voxelize

@@ -1,4 +1,4 @@
-// What the voxelizer needs to know of a mesh part before it fills it: whether it closes, which way it faces, what
+// What the voxelizer needs to know of a mesh part before it fills it: how its faces are wound, whether it closes, what
 // closes its holes and which components are inside out.
 //
 // Instances of one mesh share what they have in common, so that millions of instanced triangles cost nothing here.
@@ -27,17 +27,19 @@ struct MeshAnalysis {
     VoxelBox box{};
     std::shared_ptr<const HoleCaps> hole_caps; // where the part does not close and is to be filled
     std::unique_ptr<CappedSurface> capped;     // of `hole_caps`; null in an instance whose tiles make it themselves
-    std::shared_ptr<const FlippedComponents> flipped; // null where none is; `inverted` says how the others face
+    std::shared_ptr<const Orientation> orientation; // null where faces count as the file says, but for `inverted`
 };
 
 /// Sums over triangles.
 struct TriangleSums {
-    uint64_t boundary = 0; // the sum of boundary_key(): zero where they close
-    double volume6 = 0;    // six times the signed volume
+    uint64_t boundary = 0;  // the sum of boundary_key(): zero where they close
+    uint64_t odd_edges = 0; // the XOR of undirected edges: zero where an even number of triangles meets at each
+    double volume6 = 0;     // six times the signed volume
     Bounds bounds;
 
     void add(const TriangleSums& t) {
         boundary += t.boundary;
+        odd_edges ^= t.odd_edges;
         volume6 += t.volume6;
         bounds.add(t.bounds);
     }
@@ -53,7 +55,7 @@ struct SharedMesh {
     bool closed = false;
     double volume6 = 0;
     std::shared_ptr<const HoleCaps> hole_caps; // where it does not close
-    std::shared_ptr<const FlippedComponents> flipped;
+    std::shared_ptr<const Orientation> orientation;
 };
 
 /// Analyses a mesh with triangles. `fill`: find what an open mesh needs to be filled. Throws OutOfRange with `object`

@@ -3,7 +3,6 @@
 #include "object_mode.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace voxrt::voxelize {
 namespace {
@@ -22,15 +21,18 @@ std::string listed(const std::vector<std::string>& names) {
 
 std::vector<ObjectWarning> object_warnings(const VoxelizedObjects& objects) {
     std::vector<std::string> without, mostly_filled;
-    int64_t open = 0;
+    int64_t open = 0, flipped = 0, turned = 0, one_sided = 0;
     for (size_t i = 0; i < objects.names.size(); ++i) {
         if (objects.reported[i] && objects.voxels[i] == 0)
             without.push_back(objects.names[i]);
         open += objects.reported[i] && objects.modes[i] == static_cast<uint8_t>(ObjectMode::open);
-        if (objects.mostly_filled[i])
+        const ObjectNotes& notes = objects.notes[i];
+        flipped += notes[kFlippedComponents];
+        turned += notes[kTurnedFaces];
+        one_sided += notes[kOneSidedPieces];
+        if (notes[kMostlyFilled] != 0)
             mostly_filled.push_back(objects.names[i]);
     }
-    const int64_t flipped = std::accumulate(objects.flipped.begin(), objects.flipped.end(), int64_t{0});
 
     std::vector<ObjectWarning> warnings;
     if (!without.empty())
@@ -52,6 +54,16 @@ std::vector<ObjectWarning> object_warnings(const VoxelizedObjects& objects) {
             {"turned-pieces",
              "closed pieces that face inwards, unlike others of their object, were turned: recalculate their normals",
              flipped});
+    if (turned > 0)
+        warnings.push_back({"turned-faces",
+                            "faces were wound against those beside them and were turned, so that what the surface "
+                            "encloses is solid: recalculate the normals",
+                            turned});
+    if (one_sided > 0)
+        warnings.push_back({"one-sided",
+                            "pieces have one side only, like a Klein bottle, so nothing tells their inside for sure: "
+                            "look at the picture, or build them with fill surface",
+                            one_sided});
     return warnings;
 }
 

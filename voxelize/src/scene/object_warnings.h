@@ -20,8 +20,7 @@ struct ObjectWarning {
 struct VoxelizedObjects {
     std::span<const int64_t> voxels;
     std::span<const uint8_t> modes;
-    std::span<const int64_t> flipped;
-    std::span<const uint8_t> mostly_filled;
+    std::span<const ObjectNotes> notes;
     std::span<const std::string> names;
     std::span<const uint8_t> reported;
 };

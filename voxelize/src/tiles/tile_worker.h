@@ -134,7 +134,7 @@ private:
                TileSurface& surface) const {
         const MeshView& mesh = *part.mesh;
         surface.set_material(part.material);
-        const FlippedComponents* flipped = analysis.flipped.get();
+        const Orientation* orientation = analysis.orientation.get();
         auto add_cap = [&](size_t cap) {
             count_work(10);
             const auto& [a, b, c] = capped->caps[cap];
@@ -142,22 +142,24 @@ private:
         };
         auto add = [&](size_t t) {
             const int32_t* corner = mesh.triangles.data() + 3 * t;
-            const Vertex &a = vertices[corner[0]], &b = vertices[corner[1]], &c = vertices[corner[2]];
+            const bool reversed = orientation != nullptr && orientation->is_reversed(t);
+            const Vertex &a = vertices[corner[0]], &b = vertices[corner[reversed ? 2 : 1]],
+                         &c = vertices[corner[reversed ? 1 : 2]];
             count_work(10 + columns_under(a, b, c));
             if (part.material == 0)
                 surface.set_material(mesh.materials[t]);
             auto cover_with = [&](auto& receiver) {
                 if (capped != nullptr && capped->is_shell_only(t))
                     cover_triangle<false>(a, b, c, window, false, receiver);
-                else if (flipped != nullptr && flipped->is_flipped(t))
-                    cover_triangle<Cross>(a, c, b, window, analysis.inverted, receiver);
+                else if (orientation != nullptr && orientation->is_uncounted(t))
+                    cover_triangle<false>(a, b, c, window, analysis.inverted, receiver);
                 else
                     cover_triangle<Cross>(a, b, c, window, analysis.inverted, receiver);
             };
             if (part.material != 0 || !mesh.rasters.has_raster(t)) {
                 cover_with(surface);
             } else {
-                const TriangleRaster raster(a, b, c, mesh.rasters, t);
+                const TriangleRaster raster(a, reversed ? c : b, reversed ? b : c, mesh.rasters, t); // as authored
                 RasterSurface rastered(surface, raster);
                 cover_with(rastered);
             }

@@ -119,14 +119,13 @@ void tally_objects(const std::vector<PartView>& parts, std::vector<std::unique_p
     }
 }
 
-/// Sets the voxels, modes and flipped components of all objects.
+/// Sets the voxels, modes and notes of all objects.
 void report_objects(const std::vector<PartView>& parts, Fill fill, const TriangleBins& bins,
                     const std::vector<ObjectTally>& tallies, SparseVoxels& out) {
     const size_t objects = tallies.size();
     out.object_voxels.resize(objects);
     out.object_modes.resize(objects);
-    out.object_flipped.assign(objects, 0);
-    out.object_mostly_filled.resize(objects);
+    out.object_notes.assign(objects, ObjectNotes{});
     std::vector<ObjectFindings> found(objects);
     for (size_t i = 0; i < objects; ++i) {
         out.object_voxels[i] = tallies[i].voxels;
@@ -137,14 +136,18 @@ void report_objects(const std::vector<PartView>& parts, Fill fill, const Triangl
         ObjectFindings& object = found[parts[p].object];
         object.has_boundary |= parts[p].kind == PartKind::mesh && !mesh.closed;
         object.has_open_enclosure |= mesh.hole_caps && mesh.hole_caps->has_open_enclosure;
-        if (mesh.flipped) {
-            object.has_flipped_components |= mesh.closed;
-            out.object_flipped[parts[p].object] += mesh.flipped->count;
+        if (mesh.orientation) {
+            ObjectNotes& notes = out.object_notes[parts[p].object];
+            object.has_turned_faces |=
+                mesh.closed && (mesh.orientation->components > 0 || mesh.orientation->turned > 0);
+            notes[kFlippedComponents] += mesh.orientation->components;
+            notes[kTurnedFaces] += mesh.orientation->turned;
+            notes[kOneSidedPieces] += mesh.orientation->one_sided;
         }
     }
     for (size_t i = 0; i < objects; ++i) {
         out.object_modes[i] = uint8_t(object_mode(fill, found[i]));
-        out.object_mostly_filled[i] = tallies[i].inside_of_open > tallies[i].shell_of_open;
+        out.object_notes[i][kMostlyFilled] = tallies[i].inside_of_open > tallies[i].shell_of_open;
     }
 }
 
@@ -158,8 +161,7 @@ SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t obje
                                              [&](SparseVoxels&& block) { all = std::move(block); });
     all.object_voxels = std::move(report.object_voxels);
     all.object_modes = std::move(report.object_modes);
-    all.object_flipped = std::move(report.object_flipped);
-    all.object_mostly_filled = std::move(report.object_mostly_filled);
+    all.object_notes = std::move(report.object_notes);
     all.seconds = report.seconds;
     return all;
 }

@@ -42,6 +42,11 @@ constexpr uint64_t boundary_key(uint64_t a, uint64_t b, uint64_t c) {
     return edge_key(a, b) + edge_key(b, c) + edge_key(c, a);
 }
 
+/// The XOR over the three edges of a triangle, whichever way they are walked.
+constexpr uint64_t undirected_key(uint64_t a, uint64_t b, uint64_t c) {
+    return mix_bits(a + b) ^ mix_bits(b + c) ^ mix_bits(c + a);
+}
+
 /// Six times the signed volume between a triangle and the origin `o`. Their sum over a closed surface is positive where
 /// its normals point outwards.
 template <class P> double volume6(const P& a, const P& b, const P& c, const P& o) {

@@ -1,0 +1,188 @@
+"""What a surface encloses is solid, however its faces are turned, doubled or parted by walls within.
+
+The oracle knows no surface: it floods a block of cells from outside, and stops at the walls between them.
+"""
+
+import numpy as np
+import pytest
+from hypothesis import assume, example, given, settings
+from hypothesis import strategies as st
+from oracles.meshes import box_mesh, icosphere, joined, one_object, scene_of
+from oracles.voxels import dense
+
+from voxrt.voxelize import Grid, Mesh, SceneObject, voxelize
+
+CELL = 3  # voxels
+GRID = Grid(4, (0.0, 0.0, 0.0), 1.0)
+AXES = np.eye(3, dtype=int)
+
+
+def kinds_of(result):
+    return {warning.kind: warning.count for warning in result.warnings}
+
+
+def walls_of(labels):
+    """Yield (cell, axis) for each wall: between the cell and its upper neighbour, where their labels differ."""
+    for axis in range(3):
+        lower = np.take(labels, range(labels.shape[axis] - 1), axis)
+        upper = np.take(labels, range(1, labels.shape[axis]), axis)
+        for cell in np.argwhere(lower != upper):
+            yield tuple(map(int, cell)), axis
+
+
+def outside_of(labels):
+    """Flood from a corner through equal neighbours: True where nothing encloses a cell."""
+    outside = np.zeros(labels.shape, bool)
+    stack = [(0, 0, 0)]
+    while stack:
+        cell = stack.pop()
+        if outside[cell]:
+            continue
+        outside[cell] = True
+        for step in (*AXES, *-AXES):
+            beside = tuple(int(i) for i in np.array(cell) + step)
+            if all(0 <= i < n for i, n in zip(beside, labels.shape, strict=True)) and labels[beside] == labels[cell]:
+                stack.append(beside)
+    return outside
+
+
+def quad_of(cell, axis):
+    corner = np.array(cell) + AXES[axis]
+    u, v = AXES[(axis + 1) % 3], AXES[(axis + 2) % 3]
+    return [tuple(map(int, corner + way)) for way in (0 * u, u, u + v, v)]
+
+
+def surface_of(labels, random):
+    """Return quads, each turned at random, some of them twice, and whether they are one component wound badly."""
+    quads = []
+    for cell, axis in walls_of(labels):
+        for _ in range(random.choice([1, 1, 1, 2])):
+            quad = quad_of(cell, axis)
+            start = random.randrange(4)
+            quad = quad[start:] + quad[:start]
+            quads.append(quad[::-1] if random.random() < 0.4 else quad)
+    sums, sets = {}, {}
+
+    def root(edge):
+        while sets.setdefault(edge, edge) != edge:
+            edge = sets[edge]
+        return edge
+
+    for quad in quads:
+        edges = list(zip(quad, quad[1:] + quad[:1], strict=True))
+        for edge in edges:
+            key = tuple(sorted(edge))
+            sums[key] = sums.get(key, 0) + (1 if edge == key else -1)
+            sets[root(key)] = root(tuple(sorted(edges[0])))
+    return quads, len({root(edge) for edge in list(sets)}) == 1 and any(sums.values())
+
+
+def mesh_of(quads):
+    positions = np.array([np.array(corner) * CELL + 1 for quad in quads for corner in quad], float)
+    first = 4 * np.arange(len(quads))[:, None, None]
+    triangles = (first + np.array([[0, 1, 2], [0, 2, 3]])).reshape(-1, 3).astype(np.int32)
+    return Mesh(positions, triangles, np.ones(len(triangles), np.uint8))
+
+
+@settings(max_examples=150, deadline=None)
+@given(
+    st.lists(st.integers(0, 3), min_size=27, max_size=27).map(lambda cells: np.pad(np.reshape(cells, (3, 3, 3)), 1)),
+    st.randoms(use_true_random=False),
+    st.booleans(),
+)
+@example(np.pad(np.ones((1, 1, 1), int), 1), __import__("random").Random(2), False)
+def test_what_walls_enclose_is_solid_however_they_are_turned(labels, random, welded):
+    quads, wound_badly = surface_of(labels, random)
+    assume(wound_badly)
+    mesh = mesh_of(quads)
+    if welded:
+        positions, index = np.unique(mesh.positions, axis=0, return_inverse=True)
+        mesh = Mesh(positions, index.reshape(-1)[mesh.triangles].astype(np.int32), mesh.materials)
+    result = voxelize(one_object(mesh), GRID)
+    inside = np.repeat(np.repeat(np.repeat(~outside_of(labels), CELL, 0), CELL, 1), CELL, 2)
+    expected = np.zeros((16, 16, 16), bool)
+    shape = [min(16, n + 1) for n in inside.shape]
+    expected[1 : shape[0], 1 : shape[1], 1 : shape[2]] = inside[: shape[0] - 1, : shape[1] - 1, : shape[2] - 1]
+    np.testing.assert_array_equal(dense(result.voxels) != 0, expected)
+    again = voxelize(one_object(mesh), GRID, threads=1)
+    np.testing.assert_array_equal(result.voxels.brick_masks, again.voxels.brick_masks)
+
+
+@pytest.mark.parametrize("share", [0.1, 0.3])
+@pytest.mark.parametrize("seed", range(4))
+def test_faces_turned_at_random_change_nothing(share, seed):
+    rng = np.random.default_rng(seed)
+    outer, cavity = icosphere(3, (8, 8, 8), 7.3), icosphere(2, (8, 8, 8), 4.1)
+    mesh = joined(outer, Mesh(cavity.positions, cavity.triangles[:, ::-1].copy(), cavity.materials))
+    right = voxelize(one_object(mesh), GRID)
+    turned = rng.random(len(mesh.triangles)) < share
+    triangles = np.where(turned[:, None], mesh.triangles[:, ::-1], mesh.triangles)
+    result = voxelize(one_object(Mesh(mesh.positions, triangles, mesh.materials)), GRID)
+    np.testing.assert_array_equal(result.voxels.brick_masks, right.voxels.brick_masks)
+    assert kinds_of(result) == {"turned-faces": turned.sum()}
+    assert (right.objects[0].mode, result.objects[0].mode) == ("exact", "turned")
+
+
+def test_a_wall_that_ends_within_a_solid_opens_nothing():
+    wall = Mesh(np.array([[8, 2, 2], [8, 14, 2], [8, 8, 9.0]]), np.array([[0, 1, 2]], np.int32), np.ones(1, np.uint8))
+    box = box_mesh([2, 2, 2], [14, 14, 14])
+    corners = np.array([[8, 2, 2], [8, 14, 2]], float)
+    below = Mesh(  # the floor, split along the foot of the wall
+        np.array([[2, 2, 2], [8, 2, 2], [14, 2, 2], [14, 14, 2], [8, 14, 2], [2, 14, 2.0]]),
+        np.array([[0, 5, 4], [0, 4, 1], [1, 4, 3], [1, 3, 2]], np.int32),
+        np.ones(4, np.uint8),
+    )
+    floor = (box.positions[box.triangles][:, :, 2] == 2).all(axis=1)
+    rest = Mesh(box.positions, box.triangles[~floor], box.materials[~floor])
+    for seam, foot in ((2, corners[0]), (14, corners[1])):  # the walls that the split floor meets
+        side = (rest.positions[rest.triangles][:, :, 1] == seam).all(axis=1)
+        positions = np.array([[2, seam, 2], foot, [14, seam, 2], [14, seam, 14], [2, seam, 14.0]])
+        fan = np.array([[1, 2, 3], [1, 3, 4], [1, 4, 0]], np.int32)
+        fan = fan if seam == 2 else fan[:, ::-1].copy()
+        rest = joined(
+            Mesh(rest.positions, rest.triangles[~side], rest.materials[~side]),
+            Mesh(positions, fan, np.ones(3, np.uint8)),
+        )
+    result = voxelize(one_object(joined(rest, below, wall)), GRID)
+    assert dense(result.voxels)[2:14, 2:14, 2:14].all()
+    assert (dense(result.voxels) != 0).sum() == 12**3
+
+
+def test_every_face_stored_twice_counts_once():
+    box = box_mesh([2, 3, 4], [13, 12, 11])
+    for back in (box.triangles[:, ::-1], box.triangles):
+        mesh = Mesh(box.positions, np.concatenate([box.triangles, back]).astype(np.int32), np.ones(24, np.uint8))
+        result = voxelize(one_object(mesh), GRID)
+        assert (dense(result.voxels) != 0).sum() == 11 * 9 * 7
+
+
+def klein_bottle(n=24):
+    """The figure-eight immersion, closed and one-sided."""
+    u, v = np.meshgrid(np.arange(n) * 2 * np.pi / n, (np.arange(n) + 0.5) * 2 * np.pi / n, indexing="ij")
+    r = 2 + np.cos(u / 2) * np.sin(v) - np.sin(u / 2) * np.sin(2 * v)
+    z = np.sin(u / 2) * np.sin(v) + np.cos(u / 2) * np.sin(2 * v)
+    positions = np.stack([r * np.cos(u), r * np.sin(u), z], -1).reshape(-1, 3) * 2 + 8
+    triangles = []
+    for i in range(n):
+        for j in range(n):
+            across = (i + 1) % n
+            turn = (lambda k: (n - 1 - k) % n) if i + 1 == n else (lambda k: k % n)
+            a, b, c, d = i * n + j, across * n + turn(j), across * n + turn(j + 1), i * n + (j + 1) % n
+            triangles += [[a, b, c], [a, c, d]]
+    return Mesh(positions, np.array(triangles, np.int32), np.ones(len(triangles), np.uint8))
+
+
+def test_what_has_one_side_only_is_told():
+    assert kinds_of(voxelize(one_object(klein_bottle()), GRID)).get("one-sided") == 1
+
+
+def test_instances_share_what_was_turned():
+    box = box_mesh([1, 1, 1], [4, 4, 4])
+    triangles = box.triangles.copy()
+    triangles[:2] = triangles[:2, ::-1]
+    mesh = Mesh(box.positions, triangles, box.materials)
+    placed = np.eye(4)
+    placed[:3, 3] = 8
+    result = voxelize(scene_of(SceneObject("a", mesh, np.eye(4)), SceneObject("b", mesh, placed)), GRID)
+    assert (dense(result.voxels) != 0).sum() == 2 * 27
+    assert kinds_of(result) == {"turned-faces": 4}

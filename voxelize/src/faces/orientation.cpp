@@ -1,0 +1,392 @@
+#include "orientation.h"
+
+#include "../work/disjoint_sets.h"
+#include "closed_surface.h"
+#include "exact_predicates.h"
+
+#include <bit>
+
+namespace voxrt::voxelize {
+namespace {
+
+using Uses = std::span<const EdgeUse>;
+
+/// The sides of a face, as numbers.
+constexpr uint32_t front(uint32_t face) { return 2 * face; }
+constexpr uint32_t back(uint32_t face) { return 2 * face + 1; }
+
+/// The sides of a face that one meets first, and last, walking around an edge counter-clockwise, seen against its
+/// direction from low to high.
+constexpr uint32_t first_side(const EdgeUse& use) { return use.is_upwards ? back(use.face) : front(use.face); }
+constexpr uint32_t last_side(const EdgeUse& use) { return use.is_upwards ? front(use.face) : back(use.face); }
+
+/// Calls visit(first, again) for each face at an edge that has the corners of an earlier one.
+template <class Visit> void each_repeated(Uses uses, std::vector<EdgeUse>& sorted, Visit&& visit) {
+    if (uses.size() < 2 || (uses.size() == 2 && uses[0].opposite != uses[1].opposite))
+        return;
+    sorted.assign(uses.begin(), uses.end());
+    std::sort(sorted.begin(), sorted.end(), [](const EdgeUse& a, const EdgeUse& b) {
+        return a.opposite != b.opposite ? a.opposite < b.opposite : a.face < b.face;
+    });
+    for (size_t i = 1, first = 0; i < sorted.size(); ++i)
+        if (sorted[i].opposite == sorted[first].opposite)
+            visit(sorted[first], sorted[i]);
+        else
+            first = i;
+}
+
+/// How many more faces walk an edge upwards.
+int surplus_of(Uses uses) {
+    int sum = 0;
+    for (const EdgeUse& use : uses)
+        sum += use.is_upwards ? 1 : -1;
+    return sum;
+}
+
+/// The normal of a face at an edge from u to v, as signs: parallel normals are equal where their signs are.
+std::array<int, 3> normal_of(const Vertex& u, const Vertex& v, const Vertex& w) {
+    const auto part = [&](int32_t Vertex::* i, int32_t Vertex::* j) {
+        return sign_of((int128(v.*i) - u.*i) * (int128(w.*j) - u.*j) - (int128(v.*j) - u.*j) * (int128(w.*i) - u.*i));
+    };
+    return {part(&Vertex::y, &Vertex::z), part(&Vertex::z, &Vertex::x), part(&Vertex::x, &Vertex::y)};
+}
+
+/// Of a normal and its opposite one counts as upwards.
+bool is_upwards(const std::array<int, 3>& normal) { return normal > std::array<int, 3>{0, 0, 0}; }
+
+/// The place of a coplanar face in a pile of such faces, from below.
+struct PileRank {
+    bool faces_up; // so that what faces outwards lies outside, above as well as below
+    uint32_t sheet;
+    auto operator<=>(const PileRank&) const = default;
+};
+
+/// Orders faces counter-clockwise about an edge, beginning with one that has an area. Those without come next to it.
+/// Where several lie upon one another, rank_of(face) piles them up.
+template <class RankOf>
+void sort_about_edge(uint32_t low, std::vector<EdgeUse>& uses, const std::vector<Vertex>& at, RankOf&& rank_of) {
+    struct Placed {
+        EdgeUse use;
+        std::array<int, 3> normal; // along the way around the edge
+        int half;                  // 0: at the first face; 1: less than half a turn from it; 2: half a turn; 3: more
+        PileRank rank;
+    };
+    const Vertex &u = at[low], &v = at[uses[0].high];
+    std::vector<Placed> order;
+    for (const EdgeUse& use : uses)
+        order.push_back({use, normal_of(u, v, at[use.opposite]), 0, rank_of(use.face)});
+    constexpr std::array<int, 3> kNone{0, 0, 0};
+    const auto with_area = std::find_if(order.begin(), order.end(), [&](const Placed& p) { return p.normal != kNone; });
+    const Placed origin = with_area != order.end() ? *with_area : order[0];
+    const auto turn = [&](const Placed& a, const Placed& b) {
+        return sign_of(volume6_of(v, at[a.use.opposite], at[b.use.opposite], u));
+    };
+    for (Placed& placed : order) {
+        const int side = turn(origin, placed);
+        const bool ahead = placed.normal == origin.normal || placed.normal == kNone;
+        placed.half = side > 0 ? 1 : side < 0 ? 3 : ahead ? 0 : 2;
+    }
+    std::sort(order.begin(), order.end(), [&](const Placed& a, const Placed& b) {
+        if (a.half != b.half)
+            return a.half < b.half;
+        if (const int side = a.half % 2 == 1 ? turn(a, b) : 0; side != 0)
+            return side > 0;
+        if (a.rank != b.rank)
+            return is_upwards(a.normal) == (a.rank < b.rank);
+        return a.use.face < b.use.face;
+    });
+    for (size_t i = 0; i < uses.size(); ++i)
+        uses[i] = order[i].use;
+}
+
+/// Faces connected by edges.
+struct Component {
+    bool is_balanced = true;       // each edge is walked as often one way as the other
+    bool is_two_sided = false;     // a face that is there once for each side parts inside from outside
+    uint32_t outside = UINT32_MAX; // a cell
+    int128 least = 0;              // its volume
+    int64_t kept = 0, turned = 0;  // faces that part inside from outside: as authored, the other way around
+    double enclosing_area = 0, loose_area = 0;
+    bool is_settled() const { return outside != UINT32_MAX && kept + turned > 0 && (!is_balanced || is_two_sided); }
+};
+
+class Faces {
+public:
+    Faces(const MeshEdges& edges, const std::vector<Vertex>& vertices, bool flat)
+        : edges_(edges), at_(vertices), flat_(flat), count_(uint32_t(edges.face_count())), connected_(count_) {
+        edges_.each([&](uint32_t, Uses uses) {
+            for (const EdgeUse& use : uses)
+                connected_.merge(use.face, uses[0].face);
+        });
+        component_of_.assign(count_, UINT32_MAX);
+    }
+
+    std::shared_ptr<const Orientation> orient() {
+        find_components();
+        find_repeated();
+        find_sheets();
+        join_sides();
+        find_outsides();
+        find_two_sided();
+        tell_inside();
+        auto found = std::make_shared<Orientation>();
+        found->faces.assign(count_, 0);
+        settle(*found);
+        turn_loose(*found);
+        for (uint32_t f = 0; f < count_; ++f)
+            if (first_[f] != f && is_ours(f) && changes(own(f)))
+                found->faces[f] =
+                    uint8_t(Orientation::kUncounted | Orientation::kSettled |
+                            ((found->is_reversed(first_[f]) != opposed_[f]) ? Orientation::kReversed : 0));
+        const bool any =
+            std::any_of(found->faces.begin(), found->faces.end(), [](uint8_t state) { return state != 0; });
+        return any || found->one_sided > 0 ? found : nullptr;
+    }
+
+private:
+    /// Finds the components that are not wound consistently or have repeated faces.
+    void find_components() {
+        edges_.each([&](uint32_t, Uses uses) {
+            const bool balanced = uses.size() == 1 || surplus_of(uses) == 0;
+            bool repeated = false;
+            each_repeated(uses, sorted_, [&](const EdgeUse&, const EdgeUse&) { repeated = true; });
+            if (balanced && !repeated && !(flat_ && uses.size() > 2))
+                return;
+            uint32_t& index = component_of_[connected_.find(uses[0].face)];
+            if (index == UINT32_MAX) {
+                index = uint32_t(components_.size());
+                components_.emplace_back();
+            }
+            components_[index].is_balanced &= balanced;
+        });
+    }
+    bool is_ours(uint32_t face) { return component_of_[connected_.find(face)] != UINT32_MAX; }
+    Component& own(uint32_t face) { return components_[component_of_[connected_.find(face)]]; }
+    static bool changes(const Component& component) { return component.is_settled() || !component.is_balanced; }
+
+    /// For each face the first one with the same corners, and whether that one is wound the other way.
+    void find_repeated() {
+        first_.resize(count_);
+        std::iota(first_.begin(), first_.end(), 0u);
+        opposed_.assign(count_, false);
+        surplus_.assign(count_, 1);
+        edges_.each([&](uint32_t, Uses uses) {
+            each_repeated(uses, sorted_, [&](const EdgeUse& first, const EdgeUse& again) {
+                if (first_[again.face] != again.face)
+                    return;
+                first_[again.face] = first.face;
+                opposed_[again.face] = first.is_upwards != again.is_upwards;
+                surplus_[first.face] += opposed_[again.face] ? -1 : 1;
+            });
+        });
+    }
+
+    /// Joins coplanar faces that meet in pairs. Their lowest one tells which way they face.
+    void find_sheets() {
+        sheets_ = DisjointSets(count_);
+        edges_.each([&](uint32_t low, Uses uses) {
+            const std::vector<EdgeUse>& pair = once_of(uses);
+            if (pair.size() == 2 &&
+                volume6_of(at_[uses[0].high], at_[pair[0].opposite], at_[pair[1].opposite], at_[low]) == 0)
+                sheets_.merge(pair[0].face, pair[1].face);
+        });
+    }
+
+    PileRank rank_of(uint32_t face) {
+        const uint32_t sheet = sheets_.find(face);
+        const Corners c = edges_.corners(sheet);
+        return {is_upwards(normal_of(at_[c[0]], at_[c[1]], at_[c[2]])), sheet};
+    }
+
+    /// The faces at an edge without repeated ones.
+    const std::vector<EdgeUse>& once_of(Uses uses) {
+        once_.clear();
+        for (const EdgeUse& use : uses)
+            if (first_[use.face] == use.face)
+                once_.push_back(use);
+        return once_;
+    }
+
+    /// Joins the sides of faces around edges: those of pieces, at edges of two faces, and those of cells, at all.
+    void join_sides() {
+        pieces_ = DisjointSets(2 * size_t(count_));
+        cells_ = DisjointSets(2 * size_t(count_));
+        edges_.each([&](uint32_t low, Uses uses) {
+            if (!is_ours(uses[0].face))
+                return;
+            std::vector<EdgeUse> once = once_of(uses);
+            if (once.size() > 2)
+                sort_about_edge(low, once, at_, [this](uint32_t face) { return rank_of(face); });
+            for (size_t i = 0; i < once.size(); ++i) {
+                const EdgeUse& next = once[(i + 1) % once.size()];
+                cells_.merge(last_side(once[i]), first_side(next));
+                if (once.size() == 2)
+                    pieces_.merge(last_side(once[i]), first_side(next));
+            }
+        });
+    }
+
+    /// Finds the cell of least volume in each component.
+    void find_outsides() {
+        std::vector<int128>& volumes = volumes_;
+        volumes.assign(2 * size_t(count_), 0);
+        each_first([&](uint32_t f, Component&) {
+            const Corners c = edges_.corners(f);
+            const Vertex& origin = at_[edges_.corners(connected_.find(f))[0]];
+            const int128 volume = volume6_of(at_[c[0]], at_[c[1]], at_[c[2]], origin);
+            volumes[cells_.find(back(f))] += volume;
+            volumes[cells_.find(front(f))] -= volume;
+        });
+        each_first([&](uint32_t f, Component& component) {
+            for (const uint32_t cell : {cells_.find(front(f)), cells_.find(back(f))})
+                if (volumes[cell] < component.least) {
+                    component.least = volumes[cell];
+                    component.outside = cell;
+                }
+        });
+    }
+
+    /// Finds components whose outside and inside are parted by faces that are there once for each side: equal ones, or
+    /// such that hold a cell without volume between them.
+    void find_two_sided() {
+        enum : uint8_t { kTouchesOutside = 1, kTouchesInside = 2, kBoth = 3 };
+        std::vector<uint8_t> touches(2 * size_t(count_), 0);
+        each_first([&](uint32_t f, Component& component) {
+            const uint32_t cells[2] = {cells_.find(front(f)), cells_.find(back(f))};
+            for (int i = 0; i < 2; ++i) {
+                const uint32_t own = cells[i], other = cells[1 - i];
+                if (other == component.outside) {
+                    component.is_two_sided |= volumes_[own] > 0 && surplus_[f] == 0;
+                    touches[own] |= kTouchesOutside;
+                } else if (volumes_[other] > 0) {
+                    touches[own] |= kTouchesInside;
+                }
+                component.is_two_sided |= volumes_[own] == 0 && touches[own] == kBoth;
+            }
+        });
+    }
+
+    void tell_inside() {
+        each_first([&](uint32_t f, Component& component) {
+            const Corners c = edges_.corners(f);
+            const double area = area_of(at_[c[0]], at_[c[1]], at_[c[2]]);
+            const bool in_front = is_inside(front(f), component), behind = is_inside(back(f), component);
+            (in_front || behind ? component.enclosing_area : component.loose_area) += area;
+            component.kept += behind && !in_front;
+            component.turned += in_front && !behind;
+        });
+    }
+
+    /// Faces of components that enclose something.
+    void settle(Orientation& found) {
+        each_first([&](uint32_t f, Component& component) {
+            if (!component.is_settled())
+                return;
+            const bool in_front = is_inside(front(f), component), behind = is_inside(back(f), component);
+            const bool inwards = component.turned > component.kept;
+            bool reversed = in_front != inwards;
+            uint8_t state = Orientation::kSettled;
+            if (in_front != behind) {
+                found.turned += reversed;
+            } else if (in_front || component.loose_area < component.enclosing_area) {
+                // Of two faces upon one another both cover the layer within.
+                const bool flat_behind = volumes_[cells_.find(back(f))] == 0;
+                reversed = (flat_behind || volumes_[cells_.find(front(f))] == 0) && flat_behind != inwards;
+                state |= Orientation::kUncounted;
+            } else {
+                return;
+            }
+            found.faces[f] = uint8_t(state | (reversed ? Orientation::kReversed : 0));
+        });
+    }
+
+    /// Turns the faces of the other pieces as most of each are.
+    void turn_loose(Orientation& found) {
+        std::vector<uint32_t> fronts(2 * size_t(count_), 0); // by side of a piece
+        const auto is_loose = [&](uint32_t f, const Component& component) {
+            return found.faces[f] == 0 && !component.is_balanced;
+        };
+        each_first([&](uint32_t f, Component& component) {
+            if (is_loose(f, component))
+                ++fronts[pieces_.find(front(f))];
+        });
+        std::vector<uint32_t> reversed;
+        each_first([&](uint32_t f, Component& component) {
+            if (!is_loose(f, component))
+                return;
+            const uint32_t own = pieces_.find(front(f)), other = pieces_.find(back(f));
+            if (own == other) {
+                found.one_sided += own == front(f);
+            } else if (fronts[own] < fronts[other] || (fronts[own] == fronts[other] && own > other)) {
+                reversed.push_back(f);
+            }
+        });
+        for (const uint32_t f : reversed)
+            found.faces[f] = Orientation::kReversed;
+        found.turned += uint32_t(reversed.size());
+    }
+
+    bool is_inside(uint32_t side, const Component& component) { return cells_.find(side) != component.outside; }
+
+    /// Calls visit(face, component) for the faces of our components, those with edges, each once.
+    template <class Visit> void each_first(Visit&& visit) {
+        for (uint32_t f = 0; f < count_; ++f)
+            if (is_ours(f) && first_[f] == f) {
+                count_work(5);
+                visit(f, own(f));
+            }
+    }
+
+    static double area_of(const Vertex& a, const Vertex& b, const Vertex& c) {
+        const double ux = double(b.x) - a.x, uy = double(b.y) - a.y, uz = double(b.z) - a.z;
+        const double vx = double(c.x) - a.x, vy = double(c.y) - a.y, vz = double(c.z) - a.z;
+        return std::hypot(uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx);
+    }
+
+    const MeshEdges& edges_;
+    const std::vector<Vertex>& at_;
+    bool flat_;
+    uint32_t count_;
+    DisjointSets connected_;
+    std::vector<uint32_t> component_of_; // by the first face of a component; UINT32_MAX where all is consistent
+    std::vector<Component> components_;
+    std::vector<uint32_t> first_;
+    std::vector<bool> opposed_;
+    std::vector<EdgeUse> sorted_;
+    std::vector<int> surplus_; // of a face and those equal to it: how many more face as it does
+    DisjointSets sheets_{0}, pieces_{0}, cells_{0};
+    std::vector<int128> volumes_; // of cells, by side
+    std::vector<EdgeUse> once_;
+};
+
+} // namespace
+
+std::shared_ptr<const Orientation> find_orientation(const MeshEdges& edges, const std::vector<Vertex>& vertices,
+                                                    bool flat) {
+    bool consistent = true;
+    std::vector<EdgeUse> sorted;
+    edges.each([&](uint32_t, Uses uses) {
+        if (uses.size() > 1)
+            consistent = consistent && surplus_of(uses) == 0 && (!flat || uses.size() == 2);
+        each_repeated(uses, sorted, [&](const EdgeUse&, const EdgeUse&) { consistent = false; });
+    });
+    return consistent ? nullptr : Faces(edges, vertices, flat).orient();
+}
+
+bool has_repeated_faces(const MeshView& mesh, const std::vector<uint64_t>& vertex_keys) {
+    std::vector<uint32_t> seen(std::bit_ceil(mesh.triangle_count() * 4 / 3 + 1), 0); // by hash, then the next place
+    for (size_t t = 0; t < mesh.triangle_count(); ++t) {
+        count_work(2);
+        const int32_t* corner = mesh.triangles.data() + 3 * t;
+        const uint64_t hash = mix_bits(vertex_keys[corner[0]] + vertex_keys[corner[1]] + vertex_keys[corner[2]]);
+        const uint32_t print = uint32_t(hash >> 32) | 1;
+        size_t place = hash & (seen.size() - 1);
+        for (; seen[place] != 0; place = (place + 1) & (seen.size() - 1))
+            if (seen[place] == print)
+                return true;
+        seen[place] = print;
+    }
+    return false;
+}
+
+} // namespace voxrt::voxelize
