@@ -136,7 +136,7 @@ public:
         for (uint32_t f = 0; f < count_; ++f)
             if (first_[f] != f && is_ours(f) && changes(own(f)))
                 found->faces[f] =
-                    uint8_t(Orientation::kUncounted | Orientation::kSettled |
+                    uint8_t(Orientation::kUncounted | Orientation::kSettled | Orientation::kRepeated |
                             ((found->is_reversed(first_[f]) != opposed_[f]) ? Orientation::kReversed : 0));
         const bool any =
             std::any_of(found->faces.begin(), found->faces.end(), [](uint8_t state) { return state != 0; });
@@ -374,17 +374,25 @@ std::shared_ptr<const Orientation> find_orientation(const MeshEdges& edges, cons
 }
 
 bool has_repeated_faces(const MeshView& mesh, const std::vector<uint64_t>& vertex_keys) {
+    constexpr size_t kBatch = 64; // places are fetched ahead, since each is somewhere else in memory
     std::vector<uint32_t> seen(std::bit_ceil(mesh.triangle_count() * 4 / 3 + 1), 0); // by hash, then the next place
-    for (size_t t = 0; t < mesh.triangle_count(); ++t) {
-        count_work(2);
-        const int32_t* corner = mesh.triangles.data() + 3 * t;
-        const uint64_t hash = mix_bits(vertex_keys[corner[0]] + vertex_keys[corner[1]] + vertex_keys[corner[2]]);
-        const uint32_t print = uint32_t(hash >> 32) | 1;
-        size_t place = hash & (seen.size() - 1);
-        for (; seen[place] != 0; place = (place + 1) & (seen.size() - 1))
-            if (seen[place] == print)
-                return true;
-        seen[place] = print;
+    uint64_t hashes[kBatch];
+    for (size_t from = 0; from < mesh.triangle_count(); from += kBatch) {
+        const size_t count = std::min(kBatch, mesh.triangle_count() - from);
+        count_work(uint32_t(count));
+        for (size_t i = 0; i < count; ++i) {
+            const int32_t* corner = mesh.triangles.data() + 3 * (from + i);
+            hashes[i] = mix_bits(vertex_keys[corner[0]] + vertex_keys[corner[1]] + vertex_keys[corner[2]]);
+            __builtin_prefetch(&seen[hashes[i] & (seen.size() - 1)], 1);
+        }
+        for (size_t i = 0; i < count; ++i) {
+            const uint32_t print = uint32_t(hashes[i] >> 32) | 1;
+            size_t place = hashes[i] & (seen.size() - 1);
+            for (; seen[place] != 0; place = (place + 1) & (seen.size() - 1))
+                if (seen[place] == print)
+                    return true;
+            seen[place] = print;
+        }
     }
     return false;
 }

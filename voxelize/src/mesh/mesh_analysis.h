@@ -28,6 +28,10 @@ struct MeshAnalysis {
     std::shared_ptr<const HoleCaps> hole_caps; // where the part does not close and is to be filled
     std::unique_ptr<CappedSurface> capped;     // of `hole_caps`; null in an instance whose tiles make it themselves
     std::shared_ptr<const Orientation> orientation; // null where faces count as the file says, but for `inverted`
+    /// Whether a triangle changes no voxel, since an earlier one covers the same.
+    bool is_covered(const MeshView& mesh, size_t triangle) const {
+        return orientation && mesh.rasters.sizes.empty() && orientation->is_repeated(triangle);
+    }
 };
 
 /// Sums over triangles.

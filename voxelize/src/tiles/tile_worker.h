@@ -141,6 +141,8 @@ private:
             cross_triangle(a, b, c, window, surface);
         };
         auto add = [&](size_t t) {
+            if (analysis.is_covered(mesh, t))
+                return;
             const int32_t* corner = mesh.triangles.data() + 3 * t;
             const bool reversed = orientation != nullptr && orientation->is_reversed(t);
             const Vertex &a = vertices[corner[0]], &b = vertices[corner[reversed ? 2 : 1]],

@@ -86,8 +86,13 @@ public:
             list_whole(emit(), sums.bounds, index);
             return;
         }
-        for (auto& list : lists)
+        for (auto& list : lists) {
+            if (analysis.orientation)
+                std::erase_if(list, [&](const TileEntry& entry) {
+                    return analysis.is_covered(*part.mesh, entry.triangle.triangle);
+                });
             emit() = std::move(list);
+        }
         if (analysis.capped)
             list_caps(emit(), *analysis.capped, triangle_count, sums.bounds, index);
     }
