@@ -65,7 +65,8 @@ class MtlMaterial:
 
     name: str
     colour: tuple[float, float, float] | None = None  # ``Kd``, three reals, as written; None where there is none
-    opacity: float = 1.0  # ``d``, or 1 - ``Tr``
+    opacity: float = 1.0  # ``d``, or 1 - ``Tr`` where there is no ``d``
+    has_d: bool = False
     texture: MtlTexture | None = None  # ``map_Kd``, or None
     opacity_texture: MtlTexture | None = None  # ``map_d``, or None
 
@@ -102,9 +103,10 @@ def _set(material: MtlMaterial, keyword: str, argument: str, place: _Place) -> N
         material.colour = _colour(argument, place)
     elif keyword == "d":
         material.opacity = _real(argument.split()[-1:], place)
+        material.has_d = True
     elif keyword == "tr":
         transparency = _real(argument.split()[-1:], place)
-        if material.opacity == 1.0:  # where both are given, d counts
+        if not material.has_d:  # which the format defines; writers disagree on Tr
             material.opacity = 1.0 - transparency
     elif keyword == "map_kd":
         material.texture = _texture(keyword, argument, place)

@@ -75,7 +75,7 @@ class _Binary:
 class PlyFile:
     """The content of a file."""
 
-    # Columns by property, by element. ASCII values are float64; binary ones have the type that the header says.
+    # Columns by property, by element. Whole numbers have the type that the header says; other ASCII values are float64.
     tables: dict[str, Table]
     textures: tuple[str, ...]  # the names of ``comment TextureFile`` lines, in order
 
@@ -152,7 +152,7 @@ def _ascii(path: Path, body: bytes, elements: list[_Element]) -> dict[str, Table
             if len(block) < width * element.count:
                 raise _cut_short(path, element)
             values = _numbers(path, element, block).reshape(element.count, width)
-            tables[element.name] = {one.name: values[:, i] for i, one in enumerate(element.properties)}
+            tables[element.name] = {one.name: _declared(one, values[:, i]) for i, one in enumerate(element.properties)}
             at += width * element.count
             continue
         columns: list[list[bytes]] = [[] for _ in element.properties]
@@ -171,7 +171,7 @@ def _ascii(path: Path, body: bytes, elements: list[_Element]) -> dict[str, Table
         tables[element.name] = {
             one.name: ListColumn(np.array(lengths, dtype=np.int64), _numbers(path, element, column))
             if one.count_kind
-            else _numbers(path, element, column)
+            else _declared(one, _numbers(path, element, column))
             for column, lengths, one in zip(columns, counts, element.properties, strict=True)
         }
     return tables
@@ -184,6 +184,15 @@ def _numbers(path: Path, element: _Element, words: list[bytes]) -> NDArray[np.fl
         return np.array(words, dtype=np.bytes_).astype(np.float64) if words else np.zeros(0)
     except ValueError as error:
         raise AssetError(path, f"{element.name}: {error}", fix="export it again") from None
+
+
+def _declared(one: _Property, values: NDArray[np.float64]) -> Column:
+    """Return whole numbers of a property in the type that the header says; others stay float64, which is finer."""
+    kind = np.dtype(one.kind)
+    if kind.kind == "f" or not (values == np.floor(values)).all():
+        return values
+    limits = np.iinfo(kind)
+    return np.clip(values, limits.min, limits.max).astype(kind)
 
 
 def _binary(file: _Binary, at: int, elements: list[_Element]) -> dict[str, Table]:

@@ -23,6 +23,13 @@ from voxrt.voxelize.warning_log import WarningLog
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+# Red, green, blue and alpha of a row, by the names that writers use; the first set that is there counts.
+_CHANNELS = (
+    ("red", "green", "blue", "alpha"),
+    ("diffuse_red", "diffuse_green", "diffuse_blue", "alpha"),
+    ("r", "g", "b", "a"),
+)
+
 
 def load_ply(
     path: str | Path, *, up: str | None = None, unit: float | None = None, allow_outside: bool = False
@@ -54,7 +61,7 @@ def load_ply(
     cut, faces = triangulate_corners(positions, counts, corners)
     triangles = corners.reshape(-1, 3) if (counts == 3).all() else corners[cut]
     table = MaterialTable()
-    by_colour = _colours_of_corners(tables, triangles, kept[faces])
+    by_colour = _colours_of_corners(tables, triangles, kept[faces], log)
     textures = read_textures(path, ExternalFiles.of(path, allow_outside=allow_outside), ply.textures, log)
     coordinates = texture_coordinates(tables, corners, kept, counts, log) if textures else None
     if textures and coordinates is None:
@@ -81,34 +88,36 @@ def _normals(vertices: Table, triangles: NDArray[np.int32]) -> CornerNormals | N
 
 
 def _colours_of_corners(
-    tables: dict[str, Table], triangles: NDArray[np.int32], faces: NDArray[np.int64]
+    tables: dict[str, Table], triangles: NDArray[np.int32], faces: NDArray[np.int64], log: WarningLog
 ) -> tuple[str, NDArray[np.float64]] | None:
     """Return the faces' colours of triangles' corners, else their vertices', and what they are; None for neither."""
-    by_face, by_vertex = _colours(tables.get("face", {})), _colours(tables.get("vertex", {}))
+    by_face, by_vertex = (_colours(tables.get(element, {}), log) for element in ("face", "vertex"))
     if by_face is not None and "tristrips" not in tables:  # strips have no colours of faces
         return "face colours", np.repeat(by_face[faces][:, None], 3, axis=1)
     return None if by_vertex is None else ("vertex colours", by_vertex[triangles])
 
 
-def _colours(table: Table) -> NDArray[np.float64] | None:
-    """Return linear colour and alpha, float64, shape (N, 4), of rows whose bytes or reals are sRGB."""
-    channels = [table.get(name) for name in ("red", "green", "blue")]
-    if any(one is None or isinstance(one, ListColumn) for one in channels):
+def _colours(table: Table, log: WarningLog) -> NDArray[np.float64] | None:
+    """Return linear colour and alpha, float64, shape (N, 4), of rows whose whole numbers or reals are sRGB."""
+    columns = {name: one for name, one in table.items() if not isinstance(one, ListColumn)}
+    names = next((names for names in _CHANNELS if columns.keys() >= set(names[:3])), None)
+    if names is None:
         return None
-    alpha = table.get("alpha")
-    stored = np.stack([_unit(one) for one in channels if one is not None and not isinstance(one, ListColumn)], axis=1)
+    *channels, alpha = (columns.get(name) for name in names)
+    stored = np.stack([_unit(one, log) for one in channels if one is not None], axis=1)
     linear = LINEAR_OF_SRGB8[np.round(stored * 255.0).astype(np.uint8)]
-    opacity = np.ones(len(stored)) if alpha is None or isinstance(alpha, ListColumn) else _unit(alpha)
+    opacity = np.ones(len(stored)) if alpha is None else _unit(alpha, log)
     return np.column_stack([linear, opacity])
 
 
-def _unit(column: Column) -> NDArray[np.float64]:
-    """Return values of 0 … 1 from integers or reals; in ASCII files the range tells which."""
-    full = {"u1": 255.0, "i1": 127.0, "u2": 65535.0, "i2": 32767.0}.get(column.dtype.str[1:], 1.0)
-    values = np.nan_to_num(column.astype(np.float64), nan=0.0, posinf=1.0, neginf=0.0)
-    if full == 1.0 and len(values) and values.max() > 1.0:
-        full = 255.0
-    return np.clip(values / full, 0.0, 1.0)
+def _unit(column: Column, log: WarningLog) -> NDArray[np.float64]:
+    """Return values of 0 … 1. The declared type alone decides their range; integers of 32 bits hold bytes."""
+    full = {"u1": 255.0, "i1": 127.0, "u2": 65535.0, "i2": 32767.0, "i4": 255.0, "u4": 255.0}.get(
+        column.dtype.str[1:], 1.0
+    )
+    values = np.nan_to_num(column.astype(np.float64), nan=0.0, posinf=1.0, neginf=0.0) / full
+    log.add("colour-range", "colours above the range of their type were clamped", int((values > 1.0).sum()))
+    return np.clip(values, 0.0, 1.0)
 
 
 def _polygons(tables: dict[str, Table]) -> ListColumn | None:

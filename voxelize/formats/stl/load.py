@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import codecs
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -45,7 +47,7 @@ def load_stl(path: str | Path, *, up: str | None = None, unit: float | None = No
         The file cannot be read, is cut short, or has no triangles.
     """
     path = Path(path)
-    data = read_asset(path)
+    data = read_asset(path).removeprefix(codecs.BOM_UTF8)
     log = WarningLog()
     facet_colours = None
     if _is_binary(data):
@@ -81,14 +83,15 @@ def load_stl(path: str | Path, *, up: str | None = None, unit: float | None = No
 
 
 def _is_binary(data: bytes) -> bool:
-    """Tell whether a file is binary: its length matches its count, or it does not begin as ASCII files do.
+    """Tell whether a file is binary: its length matches its count, or no line of its beginning is that of a solid.
 
-    The word ``solid`` alone is no sign of an ASCII file: many exporters begin binary files with it.
+    The word ``solid`` alone is no sign of an ASCII file: many exporters begin binary files with it. Lines before it are
+    comments of some writers.
     """
     if len(data) >= _HEADER and len(data) == _HEADER + 50 * int.from_bytes(data[80:84], "little"):
         return True
     head = data[:1024]
-    return not (head.lstrip().lower().startswith(b"solid") and b"\0" not in head)
+    return b"\0" in head or re.search(rb"^[ \t]*solid", head, re.IGNORECASE | re.MULTILINE) is None
 
 
 def _binary(

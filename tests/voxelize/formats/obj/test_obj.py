@@ -129,6 +129,13 @@ def test_names_that_no_file_can_have(obj, name):
     assert kinds(scene) == {"missing-library": 1, "missing-texture": 6}
 
 
+@pytest.mark.parametrize("opacity", ["d 1\nTr 1", "Tr 1\nd 1"])
+def test_d_counts_beside_tr_in_any_order(obj, opacity):
+    scene = obj("mtllib model.mtl\nusemtl a\n" + CUBE, f"newmtl a\nKd 1 0 0\n{opacity}\n")
+    assert len(scene.objects[0].mesh.triangles) == 12
+    assert not scene.warnings
+
+
 @pytest.mark.parametrize("opacity", ["d 0.2", "Tr 0.8", "d -halo 0.1"])
 def test_what_lets_light_through_is_air(obj, opacity):
     faces = CUBE.replace("f 1 5 8 4", "usemtl glass\nf 1 5 8 4")

@@ -8,6 +8,7 @@ import trimesh
 from assets import asset, over_assets
 from hypothesis import given
 from hypothesis import strategies as st
+from oracles.sound_scenes import kinds
 from oracles.surfaces import area, bounds, scene_triangles, volume
 
 from voxrt.voxelize import AssetError
@@ -64,6 +65,25 @@ def test_vertex_colours(ply):
     scene = ply(data)
     assert [one.colour for one in scene.materials[1:]] == [(10, 20, 255)]
     assert not scene.warnings
+
+
+@pytest.mark.parametrize(
+    ("kind", "values", "colour", "clamped"),
+    [
+        ("uchar", "1 128 0", (1, 128, 0), 0),
+        ("ushort", "65535 32896 257", (255, 128, 1), 0),
+        ("ushort", "200 257 0", (1, 1, 0), 0),
+        ("float", "1.5 0.502 0.2", (255, 128, 51), 3),
+    ],
+)
+def test_the_declared_type_decides_the_range_of_colours(ply, kind, values, colour, clamped):
+    for names in (("red", "green", "blue"), ("diffuse_red", "diffuse_green", "diffuse_blue"), ("r", "g", "b")):
+        properties = "".join(f"property {kind} {name}\n" for name in names).encode()
+        text = header("ascii", 3, 1).replace(b"element face", properties + b"element face")
+        rows = "".join(f"{corner} {values}\n" for corner in ("0 0 0", "1 0 0", "0 1 0"))
+        scene = ply(text + rows.encode() + b"3 0 1 2 0\n")
+        assert [one.colour for one in scene.materials[1:]] == [colour]
+        assert kinds(scene) == ({"colour-range": clamped} if clamped else {})
 
 
 def test_colours_of_faces_come_before_those_of_vertices(ply):

@@ -39,6 +39,12 @@ def test_binary_that_begins_like_ascii(stl):
     assert [len(one.mesh.triangles) for one in scene.objects] == [1]
 
 
+@pytest.mark.parametrize("before", [b"\xef\xbb\xbf", b"; a comment\n", b"\n \n", b"\xef\xbb\xbf# made by hand\n\n"])
+def test_text_before_the_first_solid(stl, before):
+    scene = stl(before + f"solid part\n{FACET}endsolid\n".encode())
+    assert [(one.name, len(one.mesh.triangles)) for one in scene.objects] == [("part", 1)]
+
+
 def test_ascii_solids_become_objects(stl):
     scene = stl(f"solid a b\n{FACET}endsolid\nSOLID\n{FACET.upper()}{FACET}ENDSOLID\nsolid a b\n{FACET}endsolid a b\n")
     assert [(one.name, len(one.mesh.triangles)) for one in scene.objects] == [("a b", 1), ("part", 2), ("a b (2)", 1)]
