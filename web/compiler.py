@@ -61,12 +61,18 @@ def link(module: Path, units: list[Unit], jobs: int | None = None) -> Path:
     (BUILD / "objects").mkdir(parents=True, exist_ok=True)
     units = [*library_units(), *units]
     stale = [unit for unit in units if not unit.is_current()]
+    linked = module.with_suffix(".objects")
+    if stale:
+        linked.unlink(missing_ok=True)
     with ThreadPoolExecutor(jobs) as pool:
         for number, unit in enumerate(pool.map(compiled, stale), 1):
             print(f"[{number}/{len(stale)}] {unit.source.name}", flush=True)
-    objects = [unit.object for unit in units]
-    if not module.exists() or any(one.stat().st_mtime_ns > module.stat().st_mtime_ns for one in objects):
-        run(*zig("c++"), *LINKED, *(str(one) for one in objects), "-o", str(module))
+    objects = [str(unit.object) for unit in units]
+    # An object's name has the digest of its flags: other flags are other objects, however old they are.
+    current = "\n".join(objects)
+    if not (module.exists() and linked.exists() and linked.read_text() == current):
+        run(*zig("c++"), *LINKED, *objects, "-o", str(module))
+        linked.write_text(current)
         print(f"{module.relative_to(ROOT)}: {module.stat().st_size:,} bytes", flush=True)
     return module
 

@@ -75,7 +75,8 @@ class _Binary:
 class PlyFile:
     """The content of a file."""
 
-    # Columns by property, by element. Whole numbers have the type that the header says; other ASCII values are float64.
+    # Columns by property, by element, of the type that the header says. In ASCII files reals are float64, and whole
+    # numbers that do not fit their type are int64.
     tables: dict[str, Table]
     textures: tuple[str, ...]  # the names of ``comment TextureFile`` lines, in order
 
@@ -187,12 +188,12 @@ def _numbers(path: Path, element: _Element, words: list[bytes]) -> NDArray[np.fl
 
 
 def _declared(one: _Property, values: NDArray[np.float64]) -> Column:
-    """Return whole numbers of a property in the type that the header says; others stay float64, which is finer."""
+    """Return whole numbers in the type that the header says, or in int64 where they do not fit; reals stay."""
     kind = np.dtype(one.kind)
-    if kind.kind == "f" or not (values == np.floor(values)).all():
+    if kind.kind == "f" or not ((values == np.floor(values)) & (np.abs(values) < 2.0**53)).all():
         return values
     limits = np.iinfo(kind)
-    return np.clip(values, limits.min, limits.max).astype(kind)
+    return values.astype(kind if ((values >= limits.min) & (values <= limits.max)).all() else np.int64)
 
 
 def _binary(file: _Binary, at: int, elements: list[_Element]) -> dict[str, Table]:

@@ -111,8 +111,11 @@ def _colours(table: Table, log: WarningLog) -> NDArray[np.float64] | None:
 
 
 def _unit(column: Column, log: WarningLog) -> NDArray[np.float64]:
-    """Return values of 0 … 1. The declared type alone decides their range; integers of 32 bits hold bytes."""
-    full = {"u1": 255.0, "i1": 127.0, "u2": 65535.0, "i2": 32767.0, "i4": 255.0, "u4": 255.0}.get(
+    """Return values of 0 … 1. The declared type alone decides their range; integers of 32 bits hold bytes.
+
+    So do whole numbers of an ASCII file that do not fit their type, and are above the range then.
+    """
+    full = {"u1": 255.0, "i1": 127.0, "u2": 65535.0, "i2": 32767.0, "i4": 255.0, "u4": 255.0, "i8": 255.0}.get(
         column.dtype.str[1:], 1.0
     )
     values = np.nan_to_num(column.astype(np.float64), nan=0.0, posinf=1.0, neginf=0.0) / full

@@ -47,14 +47,14 @@ def load_stl(path: str | Path, *, up: str | None = None, unit: float | None = No
         The file cannot be read, is cut short, or has no triangles.
     """
     path = Path(path)
-    data = read_asset(path).removeprefix(codecs.BOM_UTF8)
+    data = read_asset(path)
     log = WarningLog()
     facet_colours = None
     if _is_binary(data):
         corners, facet_colours = _binary(path, data, log)
         solids = [(path.stem, corners)]
     else:
-        solids = ascii_solids(path, data)
+        solids = ascii_solids(path, data.removeprefix(codecs.BOM_UTF8))
     table = MaterialTable()
     transform = scene_transform(up, unit)
     objects = []
@@ -91,7 +91,7 @@ def _is_binary(data: bytes) -> bool:
     if len(data) >= _HEADER and len(data) == _HEADER + 50 * int.from_bytes(data[80:84], "little"):
         return True
     head = data[:1024]
-    return b"\0" in head or re.search(rb"^[ \t]*solid", head, re.IGNORECASE | re.MULTILINE) is None
+    return b"\0" in head or re.search(rb"^(\xef\xbb\xbf)?[ \t]*solid", head, re.IGNORECASE | re.MULTILINE) is None
 
 
 def _binary(

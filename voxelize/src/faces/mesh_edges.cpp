@@ -2,6 +2,21 @@
 
 namespace voxrt::voxelize {
 
+std::vector<uint32_t> weld(const std::vector<uint64_t>& keys) {
+    std::vector<uint32_t> order(keys.size()), first(keys.size());
+    std::iota(order.begin(), order.end(), 0u);
+    WorkCounter& work = WorkCounter::current();
+    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+        work.count(1);
+        return keys[a] != keys[b] ? keys[a] < keys[b] : a < b;
+    });
+    for (size_t i = 0; i < order.size(); ++i) {
+        const bool again = i > 0 && keys[order[i]] == keys[order[i - 1]];
+        first[order[i]] = again ? first[order[i - 1]] : order[i];
+    }
+    return first;
+}
+
 MeshEdges::MeshEdges(const MeshView& mesh, std::vector<uint32_t> welded)
     : mesh_(mesh), welded_(std::move(welded)), starts_(welded_.size() + 1, 0) {
     const auto each_use = [&](auto&& visit) {
@@ -12,7 +27,8 @@ MeshEdges::MeshEdges(const MeshView& mesh, std::vector<uint32_t> welded)
                 continue;
             for (int i = 0; i < 3; ++i) {
                 const uint32_t from = c[size_t(i)], to = c[size_t(i + 1) % 3];
-                visit(std::min(from, to), EdgeUse{std::max(from, to), uint32_t(face), c[size_t(i + 2) % 3], from < to});
+                visit(std::min(from, to),
+                      EdgeUse{std::max(from, to), c[size_t(i + 2) % 3], uint32_t(face) & 0x7FFF'FFFF, from < to});
             }
         }
     };

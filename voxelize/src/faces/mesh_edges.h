@@ -11,7 +11,6 @@
 #include <array>
 #include <numeric>
 #include <span>
-#include <tuple>
 #include <vector>
 
 namespace voxrt::voxelize {
@@ -21,27 +20,14 @@ using Corners = std::array<uint32_t, 3>;
 /// A face at an edge between vertices low < high.
 struct EdgeUse {
     uint32_t high;
-    uint32_t face;
-    uint32_t opposite; // the face's third corner
-    bool is_upwards;   // the face walks from low to high
+    uint32_t opposite;       // the face's third corner
+    uint32_t face : 31;      // fewer than 2^31, as their vertices
+    uint32_t is_upwards : 1; // the face walks from low to high
 };
 
-/// For each vertex the first one at the same position.
-template <class Position> std::vector<uint32_t> weld(const std::vector<Position>& positions) {
-    std::vector<uint32_t> order(positions.size()), first(positions.size());
-    std::iota(order.begin(), order.end(), 0u);
-    WorkCounter& work = WorkCounter::current();
-    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-        work.count(1);
-        const Position &p = positions[a], &q = positions[b];
-        return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
-    });
-    for (size_t i = 0; i < order.size(); ++i) {
-        const bool again = i > 0 && positions[order[i]] == positions[order[i - 1]];
-        first[order[i]] = again ? first[order[i - 1]] : order[i];
-    }
-    return first;
-}
+/// For each vertex the first one with the same key (vertex_key() or point_key(), closed_surface.h). Keys of different
+/// positions are equal about once in 2^64. n log n.
+std::vector<uint32_t> weld(const std::vector<uint64_t>& keys);
 
 class MeshEdges {
 public:

@@ -2,6 +2,7 @@
 
 #include "../work/disjoint_sets.h"
 #include "closed_surface.h"
+#include "edge_order.h"
 #include "exact_predicates.h"
 
 #include <bit>
@@ -41,62 +42,6 @@ int surplus_of(Uses uses) {
     for (const EdgeUse& use : uses)
         sum += use.is_upwards ? 1 : -1;
     return sum;
-}
-
-/// The normal of a face at an edge from u to v, as signs: parallel normals are equal where their signs are.
-std::array<int, 3> normal_of(const Vertex& u, const Vertex& v, const Vertex& w) {
-    const auto part = [&](int32_t Vertex::* i, int32_t Vertex::* j) {
-        return sign_of((int128(v.*i) - u.*i) * (int128(w.*j) - u.*j) - (int128(v.*j) - u.*j) * (int128(w.*i) - u.*i));
-    };
-    return {part(&Vertex::y, &Vertex::z), part(&Vertex::z, &Vertex::x), part(&Vertex::x, &Vertex::y)};
-}
-
-/// Of a normal and its opposite one counts as upwards.
-bool is_upwards(const std::array<int, 3>& normal) { return normal > std::array<int, 3>{0, 0, 0}; }
-
-/// The place of a coplanar face in a pile of such faces, from below.
-struct PileRank {
-    bool faces_up; // so that what faces outwards lies outside, above as well as below
-    uint32_t sheet;
-    auto operator<=>(const PileRank&) const = default;
-};
-
-/// Orders faces counter-clockwise about an edge, beginning with one that has an area. Those without come next to it.
-/// Where several lie upon one another, rank_of(face) piles them up.
-template <class RankOf>
-void sort_about_edge(uint32_t low, std::vector<EdgeUse>& uses, const std::vector<Vertex>& at, RankOf&& rank_of) {
-    struct Placed {
-        EdgeUse use;
-        std::array<int, 3> normal; // along the way around the edge
-        int half;                  // 0: at the first face; 1: less than half a turn from it; 2: half a turn; 3: more
-        PileRank rank;
-    };
-    const Vertex &u = at[low], &v = at[uses[0].high];
-    std::vector<Placed> order;
-    for (const EdgeUse& use : uses)
-        order.push_back({use, normal_of(u, v, at[use.opposite]), 0, rank_of(use.face)});
-    constexpr std::array<int, 3> kNone{0, 0, 0};
-    const auto with_area = std::find_if(order.begin(), order.end(), [&](const Placed& p) { return p.normal != kNone; });
-    const Placed origin = with_area != order.end() ? *with_area : order[0];
-    const auto turn = [&](const Placed& a, const Placed& b) {
-        return sign_of(volume6_of(v, at[a.use.opposite], at[b.use.opposite], u));
-    };
-    for (Placed& placed : order) {
-        const int side = turn(origin, placed);
-        const bool ahead = placed.normal == origin.normal || placed.normal == kNone;
-        placed.half = side > 0 ? 1 : side < 0 ? 3 : ahead ? 0 : 2;
-    }
-    std::sort(order.begin(), order.end(), [&](const Placed& a, const Placed& b) {
-        if (a.half != b.half)
-            return a.half < b.half;
-        if (const int side = a.half % 2 == 1 ? turn(a, b) : 0; side != 0)
-            return side > 0;
-        if (a.rank != b.rank)
-            return is_upwards(a.normal) == (a.rank < b.rank);
-        return a.use.face < b.use.face;
-    });
-    for (size_t i = 0; i < uses.size(); ++i)
-        uses[i] = order[i].use;
 }
 
 /// Faces connected by edges.
@@ -185,6 +130,8 @@ private:
     void find_sheets() {
         sheets_ = DisjointSets(count_);
         edges_.each([&](uint32_t low, Uses uses) {
+            if (!is_ours(uses[0].face))
+                return;
             const std::vector<EdgeUse>& pair = once_of(uses);
             if (pair.size() == 2 &&
                 volume6_of(at_[uses[0].high], at_[pair[0].opposite], at_[pair[1].opposite], at_[low]) == 0)
@@ -192,10 +139,10 @@ private:
         });
     }
 
-    PileRank rank_of(uint32_t face) {
+    StackRank rank_of(uint32_t face) {
         const uint32_t sheet = sheets_.find(face);
         const Corners c = edges_.corners(sheet);
-        return {is_upwards(normal_of(at_[c[0]], at_[c[1]], at_[c[2]])), sheet};
+        return {points_up(normal_signs(at_[c[0]], at_[c[1]], at_[c[2]])), sheet};
     }
 
     /// The faces at an edge without repeated ones.
@@ -207,7 +154,7 @@ private:
         return once_;
     }
 
-    /// Joins the sides of faces around edges: those of pieces, at edges of two faces, and those of cells, at all.
+    /// Joins the sides of faces around edges: around edges of two faces to the sides of pieces, around all to cells.
     void join_sides() {
         pieces_ = DisjointSets(2 * size_t(count_));
         cells_ = DisjointSets(2 * size_t(count_));
@@ -228,19 +175,18 @@ private:
 
     /// Finds the cell of least volume in each component.
     void find_outsides() {
-        std::vector<int128>& volumes = volumes_;
-        volumes.assign(2 * size_t(count_), 0);
+        volumes_.assign(2 * size_t(count_), 0);
         each_first([&](uint32_t f, Component&) {
             const Corners c = edges_.corners(f);
             const Vertex& origin = at_[edges_.corners(connected_.find(f))[0]];
             const int128 volume = volume6_of(at_[c[0]], at_[c[1]], at_[c[2]], origin);
-            volumes[cells_.find(back(f))] += volume;
-            volumes[cells_.find(front(f))] -= volume;
+            volumes_[cells_.find(back(f))] += volume;
+            volumes_[cells_.find(front(f))] -= volume;
         });
         each_first([&](uint32_t f, Component& component) {
             for (const uint32_t cell : {cells_.find(front(f)), cells_.find(back(f))})
-                if (volumes[cell] < component.least) {
-                    component.least = volumes[cell];
+                if (volumes_[cell] < component.least) {
+                    component.least = volumes_[cell];
                     component.outside = cell;
                 }
         });
@@ -266,6 +212,7 @@ private:
         });
     }
 
+    /// Counts the faces that part inside from outside, and the areas of those that touch the inside or do not.
     void tell_inside() {
         each_first([&](uint32_t f, Component& component) {
             const Corners c = edges_.corners(f);

@@ -24,8 +24,8 @@ namespace voxrt::voxelize {
 struct Orientation {
     static constexpr uint8_t kReversed = 1;  // the other way around
     static constexpr uint8_t kUncounted = 2; // it does not decide what is inside
-    static constexpr uint8_t kRepeated = 8;  // an earlier face has the same corners; it does not count
     static constexpr uint8_t kSettled = 4;   // it opens nothing: it is a part of what closes, or does not count
+    static constexpr uint8_t kRepeated = 8;  // an earlier face has the same corners
 
     std::vector<uint8_t> faces; // by face
     uint32_t turned = 0;        // faces that were wound against those beside them
@@ -50,8 +50,8 @@ struct Orientation {
 std::shared_ptr<const Orientation> find_orientation(const MeshEdges& edges, const std::vector<Vertex>& vertices,
                                                     bool flat);
 
-/// Whether some triangle is there twice, either way around; vertices at one position count as one. About 10 ns per
-/// triangle; mistaken with a chance of n^2 / 2^53.
+/// Whether some triangle is there twice, either way around; vertices at one position count as one. Compares 31 bits of
+/// a hash, so about one triangle of 10^9 is mistaken for another. About 10 ns per triangle.
 bool has_repeated_faces(const MeshView& mesh, const std::vector<uint64_t>& vertex_keys);
 
 } // namespace voxrt::voxelize

@@ -3,6 +3,7 @@
 #include "../faces/closed_surface.h"
 #include "../work/interrupt.h"
 
+#include <functional>
 #include <optional>
 
 namespace voxrt::voxelize {
@@ -84,23 +85,28 @@ bool closes(const MeshEdges& edges, const Orientation& orientation) {
     return closed;
 }
 
-/// `positions`: as they are welded. `box`: the volume of their box. `vertices`: the same in a lattice. `points()`: the
-/// same, to measure.
-template <class Position, class Points>
-Enclosed find_enclosed(const MeshView& mesh, const TriangleSums& sums, double box,
-                       const std::vector<Position>& positions, const std::vector<uint64_t>& keys,
-                       const std::vector<Vertex>& vertices, Points&& points, Fill fill) {
+/// `keys`: of the vertices; equal ones are welded. `box`: the volume of their box. `vertices`: in a lattice. `points`
+/// gives them to measure.
+Enclosed find_enclosed(const MeshView& mesh, const TriangleSums& sums, double box, const std::vector<uint64_t>& keys,
+                       const std::vector<Vertex>& vertices, const std::function<std::vector<Point>()>& points,
+                       Fill fill) {
     Enclosed found{sums.boundary == 0, sums.volume6, nullptr, nullptr};
     std::optional<MeshEdges> edges;
     const auto orient = [&](bool flat) {
-        edges.emplace(mesh, weld(positions));
+        edges.emplace(mesh, weld(keys));
         found.orientation = find_orientation(*edges, vertices, flat);
         if (found.orientation) {
             found.closed = closes(*edges, *found.orientation);
             found.volume6 = volume6_of(mesh, points(), *found.orientation);
         }
     };
-    const auto flip = [&] {
+    // Closes holes and flips components; returns whether some component has no volume.
+    const auto close_and_flip = [&] {
+        if (!found.closed && !fills(fill))
+            return false;
+        if (!found.closed)
+            found.hole_caps =
+                std::make_shared<const HoleCaps>(find_hole_caps(*edges, found.orientation.get(), points(), fill));
         FlippedComponents flipped = flip_components(mesh, vertices, found.orientation, found.hole_caps.get());
         found.orientation = std::move(flipped.orientation);
         return flipped.has_flat;
@@ -109,13 +115,9 @@ Enclosed find_enclosed(const MeshView& mesh, const TriangleSums& sums, double bo
     // Where it is not filled, an open surface decides nothing but the layers of faces between voxels.
     if (found.closed ? flat || has_repeated_faces(mesh, keys) : fills(fill) || sums.odd_edges == 0)
         orient(flat);
-    if (!found.closed && fills(fill))
-        found.hole_caps =
-            std::make_shared<const HoleCaps>(find_hole_caps(*edges, found.orientation.get(), points(), fill));
-    if ((found.closed || fills(fill)) && flip() && !edges) {
-        found.orientation = nullptr;
+    if (close_and_flip() && !edges) {
         orient(true);
-        flip();
+        close_and_flip();
     }
     return found;
 }
@@ -166,8 +168,8 @@ SharedMesh analyze_shared(const MeshView& mesh, uint32_t object, Fill fill) {
         }
     }
     const double box = (shared.high.x - shared.low.x) * (shared.high.y - shared.low.y) * (shared.high.z - shared.low.z);
-    const Enclosed found = find_enclosed(
-        mesh, sums, box, points, keys, in_lattice(points, shared.low, shared.high), [&] { return points; }, fill);
+    const Enclosed found =
+        find_enclosed(mesh, sums, box, keys, in_lattice(points, shared.low, shared.high), [&] { return points; }, fill);
     shared.closed = found.closed;
     shared.volume6 = found.volume6;
     shared.hole_caps = found.hole_caps;
@@ -196,8 +198,7 @@ void analyze_part(MeshAnalysis& analysis, const PartView& part, const TriangleSu
         for (int i = 0; i < 3; ++i)
             box *= double(sums.bounds.max[i] - sums.bounds.min[i]);
         found = find_enclosed(
-            *part.mesh, sums, box, analysis.vertices, keys, analysis.vertices,
-            [&] { return points_of(analysis.vertices); }, fill);
+            *part.mesh, sums, box, keys, analysis.vertices, [&] { return points_of(analysis.vertices); }, fill);
     }
     analysis.closed = found.closed;
     analysis.inverted = found.closed && found.volume6 < 0;

@@ -145,18 +145,18 @@ private:
                 return;
             const int32_t* corner = mesh.triangles.data() + 3 * t;
             const bool reversed = orientation != nullptr && orientation->is_reversed(t);
+            const bool counts = !(capped != nullptr && capped->is_shell_only(t)) &&
+                                !(orientation != nullptr && orientation->is_uncounted(t));
             const Vertex &a = vertices[corner[0]], &b = vertices[corner[reversed ? 2 : 1]],
                          &c = vertices[corner[reversed ? 1 : 2]];
             count_work(10 + columns_under(a, b, c));
             if (part.material == 0)
                 surface.set_material(mesh.materials[t]);
             auto cover_with = [&](auto& receiver) {
-                if (capped != nullptr && capped->is_shell_only(t))
-                    cover_triangle<false>(a, b, c, window, false, receiver);
-                else if (orientation != nullptr && orientation->is_uncounted(t))
-                    cover_triangle<false>(a, b, c, window, analysis.inverted, receiver);
-                else
+                if (counts)
                     cover_triangle<Cross>(a, b, c, window, analysis.inverted, receiver);
+                else
+                    cover_triangle<false>(a, b, c, window, analysis.inverted, receiver);
             };
             if (part.material != 0 || !mesh.rasters.has_raster(t)) {
                 cover_with(surface);

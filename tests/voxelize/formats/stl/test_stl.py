@@ -39,6 +39,11 @@ def test_binary_that_begins_like_ascii(stl):
     assert [len(one.mesh.triangles) for one in scene.objects] == [1]
 
 
+def test_binary_that_begins_with_a_byte_order_mark(stl):
+    scene = stl(binary(ONE, header=b"\xef\xbb\xbfsolid part"))
+    assert [len(one.mesh.triangles) for one in scene.objects] == [1]
+
+
 @pytest.mark.parametrize("before", [b"\xef\xbb\xbf", b"; a comment\n", b"\n \n", b"\xef\xbb\xbf# made by hand\n\n"])
 def test_text_before_the_first_solid(stl, before):
     scene = stl(before + f"solid part\n{FACET}endsolid\n".encode())
