@@ -18,6 +18,7 @@ from voxrt.voxelize.errors import DoesNotFitError as DoesNotFitError
 from voxrt.voxelize.errors import SceneWarning as SceneWarning
 from voxrt.voxelize.grid import Grid as Grid
 from voxrt.voxelize.grid_fitting import fit_grid as fit_grid
+from voxrt.voxelize.joined_objects import join_open_objects as join_open_objects
 from voxrt.voxelize.materials import DEFAULT_COLOUR as DEFAULT_COLOUR
 from voxrt.voxelize.materials import EMPTY as EMPTY
 from voxrt.voxelize.materials import MATERIAL_LIMIT as MATERIAL_LIMIT

@@ -30,7 +30,7 @@ from voxrt.options.shared import (
     Engine,
 )
 
-Fill: TypeAlias = Literal["solid", "surface", "auto"]
+Fill: TypeAlias = Literal["solid", "surface", "auto", "together"]
 Geometry: TypeAlias = Literal["auto", "render", "collider"]
 Pow2: TypeAlias = Literal["box", "none"]
 UpAxis: TypeAlias = Literal["x", "y", "z"]
@@ -74,7 +74,8 @@ class BuildOptions:
         details="Give this or {depth}, not both.")
     fill: Fill = option(one_of(get_args(Fill)), "auto", CONTENT,
         "solid: fill what surfaces enclose, small holes or not. surface: keep only the shell. auto, the default: "
-        "as solid, but keep only the shell of open pieces.",
+        "as solid, but keep only the shell of open pieces. together: as auto, but open objects that close one "
+        "another, such as a box and its lid, are one object.",
         details="Open are pieces whose openings exceed 5 % of their area together, such as clothes.",
         manifest="always")
     interior: int | str = option(notations.INTERIOR, "keep", CONTENT,
@@ -173,3 +174,8 @@ class BuildOptions:
                 f"{{lod}} has its own dialect, and {self.dialect} has no mean materials; leave one of them out"
             )
         check_options(self)
+
+    @property
+    def fill_per_object(self) -> Literal["solid", "surface", "auto"]:
+        """How objects are filled, after those that are filled together became one."""
+        return "auto" if self.fill == "together" else self.fill

@@ -57,7 +57,12 @@ def run_here(
         return _run_in_tiles(plan, scene, options, clock, tiles)
     with clock.stage("voxelize"):
         made = voxelize.voxelize(
-            scene, plan.grid, fill=options.fill, geometry=options.geometry, pow2=options.pow2, threads=options.threads
+            scene,
+            plan.grid,
+            fill=options.fill_per_object,
+            geometry=options.geometry,
+            pow2=options.pow2,
+            threads=options.threads,
         )
     with clock.stage("octree"):
         tree = octree.build(made.voxels, threads=options.threads)

@@ -49,7 +49,7 @@ def tiles_key(voxelizer: BlockVoxelizer) -> str:
 def block_voxelizer(scene: Scene, grid: Grid, options: BuildOptions) -> BlockVoxelizer:
     """Make a scene ready to be voxelized tile by tile."""
     return BlockVoxelizer(
-        scene, grid, fill=options.fill, geometry=options.geometry, pow2=options.pow2, threads=options.threads
+        scene, grid, fill=options.fill_per_object, geometry=options.geometry, pow2=options.pow2, threads=options.threads
     )
 
 

@@ -47,24 +47,14 @@ class Source:
         return None if self.file is None else as_text(self.file.name)
 
     def load(self) -> Scene:
-        """Load the scene, without the objects that the options ignore.
+        """Load the scene, without the objects that the options ignore and with those joined that are filled together.
 
         TypeError or ValueError if the asset is nothing that can be built; AssetError if the file cannot be read or
         honoured; DoesNotFitError for more than 255 materials.
         """
         options = self.options
-        if self.file is None:
-            return without_objects(self.label, self._value_scene(), options.ignore)
-        scene = voxelize.load(
-            self.file,
-            up=options.up,
-            unit=options.unit,
-            time=options.time,
-            animation=options.animation,
-            variants=tuple(options.variants),
-            allow_outside=options.allow_outside,
-        )
-        return without_objects(self.label, scene, options.ignore)
+        scene = without_objects(self.label, self._whole_scene(), options.ignore)
+        return voxelize.join_open_objects(scene) if options.fill == "together" else scene
 
     def with_camera(self, scene: Scene) -> Scene:
         """Return a scene with the author's camera that the options name; AssetError if it has no such camera."""
@@ -78,6 +68,20 @@ class Source:
             kinds = sorted({warning.kind for warning in others})
             more = f"; and {len(others)} more ({', '.join(kinds)})" if others else ""
             raise AssetError(self.label, f"{first.message}{more}", fix="correct the asset, or build without strict")
+
+    def _whole_scene(self) -> Scene:
+        options = self.options
+        if self.file is None:
+            return self._value_scene()
+        return voxelize.load(
+            self.file,
+            up=options.up,
+            unit=options.unit,
+            time=options.time,
+            animation=options.animation,
+            variants=tuple(options.variants),
+            allow_outside=options.allow_outside,
+        )
 
     def _value_scene(self) -> Scene:
         from voxrt.sources.from_arrays import mesh_scene  # noqa: PLC0415 - files do not need it

@@ -28,8 +28,8 @@ Point centre(const CapWinding::Cap& cap) {
 /// Twice its area, along its normal.
 Point normal(const CapWinding::Cap& cap) { return cross(minus(cap[1], cap[0]), minus(cap[2], cap[0])); }
 
-/// Error bound of a dipole of unit area at distance 1 whose ends lie at most t < 1 off its centre.
-double dipole_error(double t) { return kInverse4Pi * t * t * (3 - 2 * t) / ((1 - t) * (1 - t)); }
+/// Error bound of a dipole at distance 1, whose area is 4 pi and whose ends lie at most t < 1 off its centre.
+double dipole_error(double t) { return t * t * (3 - 2 * t) / ((1 - t) * (1 - t)); }
 
 /// Tangents of half solid angles, multiplied as complex numbers: a sum of angles with one arc tangent at the end.
 class AngleSum {
@@ -106,6 +106,10 @@ void add_solid_angle(AngleSum& sum, const CapWinding::Cap& cap, const Point& q) 
 }
 
 } // namespace
+
+CapWinding::Offset::Offset(const Point& d, double square)
+    : inverse_square(kInverse4Pi / square), inverse(1 / std::sqrt(square)),
+      direction{d.x * inverse, d.y * inverse, d.z * inverse} {}
 
 CapWinding::CapWinding(std::vector<Cap> caps) : caps_(std::move(caps)) {
     if (caps_.empty())
@@ -217,47 +221,56 @@ int32_t CapWinding::build(uint32_t first, uint32_t last) {
     return index;
 }
 
-double CapWinding::dipole_angle(const Node& node, const Point& d, double square) {
+double CapWinding::dipole_angle(const Node& node, const Offset& from) {
+    const Point& u = from.direction;
     const double* m = node.moment;
-    const double quadrupole = m[0] * d.x * d.x + m[1] * d.y * d.y + m[2] * d.z * d.z +
-                              2 * (m[3] * d.x * d.y + m[4] * d.y * d.z + m[5] * d.z * d.x);
-    return kInverse4Pi * (dot(node.dipole, d) + m[0] + m[1] + m[2] - 3 * quadrupole / square) /
-           (square * std::sqrt(square));
+    const double quadrupole = m[0] * u.x * u.x + m[1] * u.y * u.y + m[2] * u.z * u.z +
+                              2 * (m[3] * u.x * u.y + m[4] * u.y * u.z + m[5] * u.z * u.x);
+    return from.inverse_square * (dot(node.dipole, u) + from.inverse * (m[0] + m[1] + m[2] - 3 * quadrupole));
 }
 
-void CapWinding::add_dipole(const Node& node, const Point& d, double square, LinearExpansion& sum) {
-    const double cube = kInverse4Pi / (square * std::sqrt(square));
-    sum.angle += dipole_angle(node, d, square);
-    sum.gradient = plus(plus(sum.gradient, -cube, node.dipole), 3 * cube * dot(node.dipole, d) / square, d);
+void CapWinding::add_dipole(const Node& node, const Offset& from, LinearExpansion& sum) {
+    const double slope = from.inverse_square * from.inverse;
+    sum.angle += dipole_angle(node, from);
+    sum.gradient =
+        plus(plus(sum.gradient, -slope, node.dipole), 3 * slope * dot(node.dipole, from.direction), from.direction);
 }
 
-bool CapWinding::split(const Point& centre, double radius, double far_error, size_t most, LinearExpansion& far,
-                       std::vector<uint32_t>& near) const {
+bool CapWinding::split(const Seen& outer, const Point& centre, double radius, double far_error, double smallest,
+                       size_t most, Seen& seen) const {
+    seen.centre = centre;
+    seen.far = outer.far;
+    seen.far.angle += dot(outer.far.gradient, minus(centre, outer.centre));
+    seen.near.clear();
     int32_t stack[64];
-    int depth = 0;
-    if (!nodes_.empty())
-        stack[depth++] = 0;
     uint32_t visited = 0;
-    while (depth > 0) {
-        ++visited;
-        const Node& node = nodes_[stack[--depth]];
-        const Point d = minus(node.centre, centre);
-        const double square = dot(d, d), distance = std::sqrt(square), spread = node.radius + radius;
-        if (spread < kFarthestEnd * distance) {
-            const double error = node.area * dipole_error(spread / distance) / square;
-            if (error <= far_error) {
-                add_dipole(node, d, square, far);
-                far.error_bound += error;
-                continue;
+    for (const uint32_t root : outer.near) {
+        int depth = 0;
+        stack[depth++] = int32_t(root);
+        while (depth > 0) {
+            ++visited;
+            const int32_t number = stack[--depth];
+            const Node& node = nodes_[number];
+            const Point d = minus(node.centre, centre);
+            const double square = dot(d, d), spread = node.radius + radius, weight = kInverse4Pi * node.area / square;
+            // The bound's first term refuses most nodes.
+            const double ends = spread * spread / square;
+            if (ends < kFarthestEnd * kFarthestEnd && 3 * ends * weight <= far_error) {
+                const double error = weight * dipole_error(std::sqrt(ends));
+                if (error <= far_error) {
+                    add_dipole(node, Offset(d, square), seen.far);
+                    seen.far.error_bound += error;
+                    continue;
+                }
             }
-        }
-        if (node.left >= 0) {
-            stack[depth++] = node.left;
-            stack[depth++] = node.right;
-        } else {
-            if (near.size() == most)
-                return false;
-            near.push_back(node.first);
+            if (node.left >= 0 && !(node.radius < smallest)) {
+                stack[depth++] = node.left;
+                stack[depth++] = node.right;
+            } else {
+                if (seen.near.size() == most)
+                    return false;
+                seen.near.push_back(uint32_t(number));
+            }
         }
     }
     count_work(2 * visited);
@@ -271,15 +284,15 @@ double CapWinding::at(const Point& q, double tolerance) const {
     int depth = 0;
     if (!nodes_.empty())
         stack[depth++] = 0;
-    const double share = nodes_.empty() ? 0 : tolerance / nodes_[0].area;
+    const double share = nodes_.empty() ? 0 : tolerance / (kInverse4Pi * nodes_[0].area);
     uint32_t visited = 0;
     while (depth > 0) {
         ++visited;
         const Node& node = nodes_[stack[--depth]];
         const Point d = minus(node.centre, q);
-        const double square = dot(d, d), distance = std::sqrt(square), t = node.radius / distance;
+        const double square = dot(d, d), t = node.radius / std::sqrt(square);
         if (t < kFarthestEnd && dipole_error(t) <= share * square) {
-            total += dipole_angle(node, d, square);
+            total += dipole_angle(node, Offset(d, square));
         } else if (node.left >= 0) {
             stack[depth++] = node.left;
             stack[depth++] = node.right;

@@ -42,11 +42,22 @@ public:
 
     bool empty() const { return caps_.empty(); }
 
-    /// The caps for points in the ball of `radius` about `centre`, from the root: nodes whose error is at most
-    /// `far_error` each go into `far`, an expansion about `centre`; the caps of all others are appended to `near`.
-    /// Gives up, and returns false, where these become more than `most`.
-    bool split(const Point& centre, double radius, double far_error, size_t most, LinearExpansion& far,
-               std::vector<uint32_t>& near) const;
+    /// Caps as points in a ball see them: far ones as one expansion about its centre; nodes of the tree hold the
+    /// others.
+    struct Seen {
+        Point centre{};
+        LinearExpansion far;
+        std::vector<uint32_t> near;
+    };
+    /// All caps near.
+    Seen all() const { return {{}, {}, {0}}; }
+    /// What a ball sees that lies in the ball of `outer`. Nodes whose error is at most `far_error` each are far; others
+    /// are opened, down to caps or below a radius of `smallest`. Gives up, and returns false, where more than `most` are
+    /// near.
+    bool split(const Seen& outer, const Point& centre, double radius, double far_error, double smallest, size_t most,
+               Seen& seen) const;
+    /// The cap of a node that has one.
+    uint32_t cap_of(uint32_t node) const { return nodes_[node].first; }
 
     static constexpr uint32_t kNoCap = 0xFFFF'FFFF;
     size_t count() const { return caps_.size(); }
@@ -71,8 +82,14 @@ private:
     int32_t build(uint32_t first, uint32_t last);
     void find_vertices();
     void pair_edges();
-    static double dipole_angle(const Node& node, const Point& d, double square);
-    static void add_dipole(const Node& node, const Point& d, double square, LinearExpansion& sum);
+    /// From a point to the centre of a node. `inverse_square` is over 4 pi.
+    struct Offset {
+        double inverse_square, inverse;
+        Point direction;
+        Offset(const Point& d, double square);
+    };
+    static double dipole_angle(const Node& node, const Offset& from);
+    static void add_dipole(const Node& node, const Offset& from, LinearExpansion& sum);
 
     std::vector<Cap> caps_;
     std::vector<Node> nodes_;

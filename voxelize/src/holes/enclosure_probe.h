@@ -76,7 +76,7 @@ private:
             return angles;
         }
         NearCaps near;
-        near.gather(caps, at(kSide / 2, kSide / 2, kSide / 2), 0, 0, NearCaps::kAll);
+        near.gather(caps, caps.all(), at(kSide / 2, kSide / 2, kSide / 2), 0, 0, NearCaps::kAll);
         for (size_t n = 0; n < angles.size(); n += NearCaps::kBatch) {
             NearCaps::Batch batch;
             for (size_t i = 0; i < NearCaps::kBatch; ++i)

@@ -122,15 +122,13 @@ uint32_t NearCaps::local_vertex(const CapWinding& caps, uint32_t vertex) {
     Mark& mark = vertex_marks_[vertex];
     if (mark.gathering != gathering_) {
         mark = {gathering_, uint32_t(vertices_.size())};
-        vertices_.push_back(minus(caps.vertex(vertex), centre_));
+        vertices_.push_back(minus(caps.vertex(vertex), seen_.centre));
     }
     return mark.local;
 }
 
-bool NearCaps::gather(const CapWinding& caps, const Point& centre, double radius, double far_error, size_t most) {
-    centre_ = centre;
-    far_ = {};
-    numbers_.clear();
+bool NearCaps::gather(const CapWinding& caps, const CapWinding::Seen& outer, const Point& centre, double radius,
+                      double far_error, size_t most) {
     caps_.clear();
     edges_.clear();
     vertices_.clear();
@@ -141,11 +139,12 @@ bool NearCaps::gather(const CapWinding& caps, const Point& centre, double radius
         std::fill(cap_marks_.begin(), cap_marks_.end(), 0);
         gathering_ = 1;
     }
-    if (!caps.split(centre, radius, far_error, most, far_, numbers_))
+    if (!caps.split(outer, centre, radius, far_error, 0, most, seen_))
         return false;
-    for (const uint32_t number : numbers_)
-        cap_marks_[number] = gathering_;
-    for (const uint32_t number : numbers_) {
+    for (const uint32_t node : seen_.near)
+        cap_marks_[caps.cap_of(node)] = gathering_;
+    for (const uint32_t node : seen_.near) {
+        const uint32_t number = caps.cap_of(node);
         Cap cap;
         for (int i = 0; i < 3; ++i)
             cap.corners[i] = local_vertex(caps, caps.corner(number, i));
@@ -175,15 +174,15 @@ void NearCaps::find_angles(Batch& batch) {
     Points points;
     for (int i = 0; i < lanes; ++i) {
         const int j = std::min(i, batch.count - 1);
-        points.x[i] = batch.x[j] - centre_.x;
-        points.y[i] = batch.y[j] - centre_.y;
-        points.z[i] = batch.z[j] - centre_.z;
+        points.x[i] = batch.x[j] - seen_.centre.x;
+        points.y[i] = batch.y[j] - seen_.centre.y;
+        points.z[i] = batch.z[j] - seen_.centre.z;
     }
     (few ? sum_few : sum_batch)(caps_, vertices_, distances_.data(), points);
     for (int i = 0; i < batch.count; ++i) {
         const double half = std::atan2(points.im[i], points.re[i]) + 2 * std::numbers::pi * points.wraps[i];
-        batch.angle[i] = 2 * kInverse4Pi * half + far_.angle + far_.gradient.x * points.x[i] +
-                         far_.gradient.y * points.y[i] + far_.gradient.z * points.z[i];
+        batch.angle[i] = 2 * kInverse4Pi * half + seen_.far.angle + seen_.far.gradient.x * points.x[i] +
+                         seen_.far.gradient.y * points.y[i] + seen_.far.gradient.z * points.z[i];
         batch.doubtful[i] = points.doubt[i] > 0 || !std::isfinite(half) ||
                             !(std::abs(points.re[i]) + std::abs(points.im[i]) > kUnderflow);
     }
@@ -200,8 +199,8 @@ double NearCaps::find_angle(const Point& point, bool& doubtful) {
 
 NearCaps::Change NearCaps::find_change(const Point& centre, double radius, double limit) const {
     Change found;
-    found.gradient = far_.gradient;
-    const Point q = minus(centre, centre_);
+    found.gradient = seen_.far.gradient;
+    const Point q = minus(centre, seen_.centre);
     count_work(uint32_t(edges_.size() * 3 + caps_.size()));
     for (const Edge& edge : edges_) {
         // The field of a short wire is direction x d / d^3. It is a derivative of 1 / d, so that its second derivatives

@@ -19,13 +19,15 @@ class NearCaps {
 public:
     static constexpr size_t kAll = ~size_t{0};
 
-    /// Gathers the caps for points in the ball of `radius` about `centre`. Nodes of caps are taken as far where each
-    /// has an error of at most `far_error`. Gives up, and returns false, where more than `most` caps are near.
-    bool gather(const CapWinding& caps, const Point& centre, double radius, double far_error, size_t most);
+    /// Gathers the caps for points in the ball of `radius` about `centre`, which lies in that of `outer`. Nodes of caps
+    /// are taken as far where each has an error of at most `far_error`. Gives up, and returns false, where more than
+    /// `most` caps are near.
+    bool gather(const CapWinding& caps, const CapWinding::Seen& outer, const Point& centre, double radius,
+                double far_error, size_t most);
 
     size_t count() const { return caps_.size(); }
     /// Largest error of an angle.
-    double error_bound() const { return far_.error_bound; }
+    double error_bound() const { return seen_.far.error_bound; }
 
     static constexpr int kBatch = 16;
 
@@ -85,9 +87,7 @@ private:
     };
     uint32_t local_vertex(const CapWinding& caps, uint32_t vertex);
 
-    Point centre_{};
-    LinearExpansion far_;
-    std::vector<uint32_t> numbers_; // of the caps, in CapWinding
+    CapWinding::Seen seen_;
     std::vector<Cap> caps_;
     std::vector<Edge> edges_;       // the boundary
     std::vector<Point> vertices_;   // relative to the centre

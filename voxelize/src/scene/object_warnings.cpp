@@ -40,7 +40,9 @@ std::vector<ObjectWarning> object_warnings(const VoxelizedObjects& objects) {
     if (open > 0)
         warnings.push_back(
             {"open-surface",
-             "open objects, like a room without a front, were not filled: close them or give them colliders", open});
+             "open objects, like a room without a front, were not filled: close them, give them colliders, or fill "
+             "objects that close one another together",
+             open});
     if (!mostly_filled.empty()) {
         const size_t others = mostly_filled.size() - 1;
         const std::string more = others > 0 ? " and " + std::to_string(others) + " more" : "";

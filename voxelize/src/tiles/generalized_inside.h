@@ -40,6 +40,7 @@ public:
     /// Begins a tile. The inside lies within `box`. Every brick() must then be set before classify().
     void reset(const CapWinding& caps, const VoxelBox& box, const Window& window) {
         caps_ = &caps;
+        all_ = caps.all();
         side_ = window.top + 1;
         height_ = (side_ + kBrickSide - 1) / kBrickSide;
         x0_ = window.x0;
@@ -93,18 +94,21 @@ public:
         for (int z = 0; z < kBrickSide; ++z)
             undecided_[z] &= ~surface[z];
         const Cell brick{0, 0, 0, std::min(side_, kBrickSide)};
-        // Most voxels near a boundary are far from 1/2: few caps are near enough to matter for them.
-        double far_error = class_of(column, k) == Class::rough ? kCoarsest : kFine;
-        for (bool first = true; far_error >= kFinest && !is_empty(undecided_); far_error /= kFiner, first = false) {
+        double far_error = kFine;
+        bool first = true;
+        if (class_of(column, k) == Class::rough) {
+            classify_parts_apart(brick, kCoarse);
+            classify_parts_apart(brick, kFine);
+            far_error /= kFiner;
+        }
+        for (; far_error >= kFinest && !is_empty(undecided_); far_error /= kFiner) {
             const bool by_cells = first || count_undecided(brick) > kFewVoxels;
+            first = false;
             const Ball ball = by_cells ? Ball{centre_of(brick), radius_of(brick)} : around_undecided();
-            near_.gather(*caps_, ball.centre, ball.radius, far_error, NearCaps::kAll);
+            near_.gather(*caps_, all_, ball.centre, ball.radius, far_error, NearCaps::kAll);
             if (by_cells) {
                 rough_ = {};
-                if (class_of(column, k) == Class::rough)
-                    classify_parts(brick);
-                else
-                    classify_cell(brick);
+                classify_cell(brick);
                 classify_one_by_one(rough_);
             } else {
                 classify_one_by_one(undecided_);
@@ -128,8 +132,8 @@ private:
     static constexpr double kTie = 0.5 + 1e-6;          // above 1/2 by more than rounding
     static constexpr double kSample = 0.5 + 1.0 / 8192; // the sample point of a voxel is on its column's ray
     // Errors of one node of caps: for cubes; for voxels near a boundary; for others; where all else is exact.
-    static constexpr double kCubeError = 1.0 / 256, kCoarsest = 1.0 / 64, kFine = 1.0 / (1 << 13);
-    static constexpr double kFinest = 1.0 / (1 << 22), kFiner = 128;
+    static constexpr double kCubeError = 1.0 / 256, kCoarse = 1.0 / 1024, kFine = 1.0 / (1 << 13);
+    static constexpr double kFinest = 1.0 / (1 << 22), kFiner = 16;
     static constexpr size_t kManyCaps = 64;     // near a cube: its parts are asked instead
     static constexpr double kRounding = 1e-7;   // the error of an angle that is not doubtful
     static constexpr double kRoundable = 0.375; // error from which a whole number can be told
@@ -181,7 +185,7 @@ private:
             x + side <= side_ && y + side <= side_ && z + side <= side_ && !any_surface(bx, by, k, bricks);
         const double middle = (side - 1) / 2.0 + kSample, radius = (side - 1) / 2.0 * kSqrt3;
         const Point centre{x + middle, y + middle, z + middle};
-        if (!near_.gather(*caps_, centre, radius, kCubeError, bricks > 1 ? kManyCaps : NearCaps::kAll))
+        if (!near_.gather(*caps_, all_, centre, radius, kCubeError, kManyCaps))
             return Class::rough;
         const NearCaps::Change change = near_.find_change(centre, radius, 0.5);
         const double error = 2 * change.error_bound + near_.error_bound() + kRounding;
@@ -292,6 +296,26 @@ private:
         classify_parts(cell);
     }
 
+    /// Decides what it can near the boundary of a hole. Most voxels there are far from 1/2, and few caps are near
+    /// enough to a part of the brick to matter for it.
+    void classify_parts_apart(const Cell& brick, double far_error) {
+        if (is_empty(undecided_))
+            return;
+        const int side = std::max(1, brick.side / 2);
+        caps_->split(all_, centre_of(brick), radius_of(brick), far_error, side, NearCaps::kAll, seen_);
+        for (int x = 0; x < brick.side; x += side)
+            for (int y = 0; y < brick.side; y += side)
+                for (int z = 0; z < brick.side; z += side) {
+                    const Cell part{x, y, z, side};
+                    if (count_undecided(part) == 0)
+                        continue;
+                    near_.gather(*caps_, seen_, centre_of(part), radius_of(part), far_error, NearCaps::kAll);
+                    rough_ = {};
+                    classify_cell(part);
+                    classify_one_by_one(rough_);
+                }
+    }
+
     void classify_parts(const Cell& cell) {
         const int half = cell.side / 2;
         if (cell.side > kBrickSide / 2)
@@ -395,6 +419,7 @@ private:
     static constexpr uint64_t kFirstColumn = 0x0101'0101'0101'0101; // x = 0
 
     const CapWinding* caps_ = nullptr;
+    CapWinding::Seen all_, seen_; // from anywhere; from the brick
     int side_ = 0, height_ = 0, x0_ = 0, y0_ = 0;
     int low_[3] = {}, high_[3] = {};
     std::vector<Brick> bricks_;
