@@ -43,8 +43,16 @@ def whole(name: str, value: object, low: int, high: int) -> int:
     return int(number)
 
 
-def real(name: str, value: object, *, above: float = -math.inf, below: float = math.inf) -> float:
-    """Return a real number strictly between `above` and `below` as a finite float.
+def real(
+    name: str,
+    value: object,
+    *,
+    above: float = -math.inf,
+    below: float = math.inf,
+    low: float = -math.inf,
+    high: float = math.inf,
+) -> float:
+    """Return a real number `low` … `high`, strictly between `above` and `below`, as a finite float.
 
     >>> real("voxel_size", 1, above=0)
     1.0
@@ -54,11 +62,12 @@ def real(name: str, value: object, *, above: float = -math.inf, below: float = m
     ValueError: voxel_size must be a finite number above 0, not -2
     """
     limits = [f"above {above:g}"] * math.isfinite(above) + [f"below {below:g}"] * math.isfinite(below)
+    limits += [f"from {low:g} to {high:g}"] * (math.isfinite(low) and math.isfinite(high))
     expected = " ".join([f"{name} must be a finite number", " and ".join(limits)]).strip()
     number = _number(value)
     if number is None:
         raise TypeError(f"{expected}, not {shown(value)}")
-    if not (math.isfinite(number) and above < number < below):
+    if not (math.isfinite(number) and above < number < below and low <= number <= high):
         raise ValueError(f"{expected}, not {shown(value)}")
     return float(number)
 

@@ -22,17 +22,19 @@ UP_AXES: tuple[UpAxis, ...] = ("x", "y", "z")
 
 # Module, function and options of each loader. Loaders are imported when needed, for importing USD takes longer than
 # building a small scene.
+_OF_GLTF = {"time", "animation", "variants", "allow_outside", "opaque_from"}
+_OF_USD = {"time", "variants", "allow_outside", "opaque_from"}
 _LOADERS = {
-    ".gltf": ("voxrt.voxelize.formats.gltf", "load_gltf", {"time", "animation", "variants", "allow_outside"}),
-    ".glb": ("voxrt.voxelize.formats.gltf", "load_gltf", {"time", "animation", "variants", "allow_outside"}),
-    ".usd": ("voxrt.voxelize.formats.usd.isolated", "read_isolated", {"time", "variants", "allow_outside"}),
-    ".usda": ("voxrt.voxelize.formats.usd.isolated", "read_isolated", {"time", "variants", "allow_outside"}),
-    ".usdc": ("voxrt.voxelize.formats.usd.isolated", "read_isolated", {"time", "variants", "allow_outside"}),
-    ".usdz": ("voxrt.voxelize.formats.usd.isolated", "read_isolated", {"time", "variants", "allow_outside"}),
-    ".toml": ("voxrt.voxelize.authoring.scene_toml", "load_scene_toml", {"allow_outside"}),
-    ".obj": ("voxrt.voxelize.formats.obj", "load_obj", {"up", "unit", "allow_outside"}),
+    ".gltf": ("voxrt.voxelize.formats.gltf", "load_gltf", _OF_GLTF),
+    ".glb": ("voxrt.voxelize.formats.gltf", "load_gltf", _OF_GLTF),
+    ".usd": ("voxrt.voxelize.formats.usd.isolated", "read_isolated", _OF_USD),
+    ".usda": ("voxrt.voxelize.formats.usd.isolated", "read_isolated", _OF_USD),
+    ".usdc": ("voxrt.voxelize.formats.usd.isolated", "read_isolated", _OF_USD),
+    ".usdz": ("voxrt.voxelize.formats.usd.isolated", "read_isolated", _OF_USD),
+    ".toml": ("voxrt.voxelize.authoring.scene_toml", "load_scene_toml", {"allow_outside", "opaque_from"}),
+    ".obj": ("voxrt.voxelize.formats.obj", "load_obj", {"up", "unit", "allow_outside", "opaque_from"}),
     ".stl": ("voxrt.voxelize.formats.stl.load", "load_stl", {"up", "unit"}),
-    ".ply": ("voxrt.voxelize.formats.ply", "load_ply", {"up", "unit", "allow_outside"}),
+    ".ply": ("voxrt.voxelize.formats.ply", "load_ply", {"up", "unit", "allow_outside", "opaque_from"}),
 }
 
 SUFFIXES = tuple(_LOADERS)
@@ -46,6 +48,7 @@ _WHY_IGNORED = {
     "time": "the time was ignored: {} files have no animation",
     "animation": "the animation's name was ignored: {} files have no named animations",
     "variants": "variants were ignored: {} files have none",
+    "opaque_from": "--opaque-from was ignored: {} files have no opacity",
 }
 
 
@@ -57,6 +60,7 @@ def load(
     time: float | None = None,
     animation: str | None = None,
     variants: Sequence[str] = (),
+    opaque_from: float | None = None,
     allow_outside: bool = False,
 ) -> Scene:
     r"""Read an asset file into a scene (right-handed, metres, y up).
@@ -78,6 +82,9 @@ def load(
         An animation's name or its index, counted from 0 (glTF); None for the first.
     variants
         The name of one material variant (glTF), or any number of ``/prim/path:set=variant`` (USD).
+    opaque_from
+        Surfaces of lower opacity are left out, 0 … 1, for formats with opacity (glTF, OBJ, PLY, USD); None for 0.5. The
+        alpha cutoff or the opacity threshold that an author gave a material decides in its place.
     allow_outside
         Whether files that the asset names may stand outside its folder and the folders below.
 
@@ -110,7 +117,7 @@ def load(
     if not isinstance(path, (str, Path)):
         raise TypeError(f"path must be a string or a Path, not {arguments.shown(path)}")
     path = Path(path)
-    chosen = _checked(up=up, unit=unit, time=time, animation=animation, variants=variants)
+    chosen = _checked(up=up, unit=unit, time=time, animation=animation, variants=variants, opaque_from=opaque_from)
     allow_outside = arguments.flag("allow_outside", allow_outside)
     suffix = _suffix(path)
     module, name, options_of = _LOADERS[suffix]
@@ -130,7 +137,7 @@ def load(
 
 
 def _checked(
-    *, up: object, unit: object, time: object, animation: object, variants: Sequence[str]
+    *, up: object, unit: object, time: object, animation: object, variants: Sequence[str], opaque_from: object
 ) -> dict[str, object]:
     """Return the options that are given, checked and converted."""
     chosen: dict[str, object] = {}
@@ -142,6 +149,8 @@ def _checked(
         chosen["time"] = arguments.real("time", time)
     if animation is not None:
         chosen["animation"] = arguments.text("animation", animation)
+    if opaque_from is not None:
+        chosen["opaque_from"] = arguments.real("opaque_from", opaque_from, low=0, high=1)
     if isinstance(variants, str):
         raise TypeError(f"variants must be a sequence of strings, not a string: pass ({variants!r},)")
     if variants:

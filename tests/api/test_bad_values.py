@@ -19,7 +19,7 @@ CAMERA = sim.frame_scene(ROM, (8, 8))
     ("option", "value", "message"),
     [
         ("engine", "gpu", "engine must be 'rtl' or 'model', not 'gpu'"),
-        ("fill", "half", "fill must be 'solid', 'surface' or 'auto'"),
+        ("fill", "half", "fill must be 'solid', 'surface', 'auto' or 'together'"),
         ("geometry", None, "geometry must be"),
         ("dialect", "vhdl", "dialect must be"),
         ("up", "w", "up must be 'x', 'y' or 'z'"),

@@ -15,12 +15,24 @@ ALLOW_OUTSIDE = "put it into the asset's folder, or allow it: --allow-outside (i
 """How to fix a reference to a file outside the asset's folder."""
 
 
+LFS_POINTER = b"version https://git-lfs.github.com/spec/"
+"""How the small files begin that Git LFS puts in the place of large ones."""
+
+
 def read_asset(path: Path) -> bytes:
     """Read a file whole; raise AssetError where it cannot be read."""
     try:
-        return path.read_bytes()
+        data = path.read_bytes()
     except OSError as error:
         raise AssetError(path, f"cannot be read: {error.strerror}", fix="check the path and its permissions") from None
+    refuse_pointer(path, data)
+    return data
+
+
+def refuse_pointer(path: object, data: bytes, place: str = "") -> None:
+    """Raise AssetError where a file's bytes are those of a Git LFS pointer."""
+    if data.startswith(LFS_POINTER):
+        raise AssetError(path, "is a Git LFS pointer, which stands for the file", place=place, fix="run: git lfs pull")
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,19 +77,19 @@ class ExternalFiles:
             found = None
         return found
 
-    def find_exported(self, name: str) -> Path | None:
+    def find_exported(self, name: str, start: Path | None = None) -> Path | None:
         """Return the file that another machine's path means; None where there is none.
 
         Backslashes separate folders, too. The last part alone is tried as well, and case does not matter. An allowed
-        file is preferred to others.
+        file is preferred to others. Names are relative to the folder `start`, or to the asset's folder for None.
         """
         parts = PurePosixPath(name.strip().strip('"').replace("\\", "/")).parts
-        found = [self._ignoring_case(tail) for tail in (parts, parts[-1:]) if tail]
+        found = [self._ignoring_case(tail, start or self.folder) for tail in (parts, parts[-1:]) if tail]
         there = [target for target in found if target is not None]
         return next((target for target in there if self.allows(target)), next(iter(there), None))
 
-    def _ignoring_case(self, parts: tuple[str, ...]) -> Path | None:
-        place = self.folder
+    def _ignoring_case(self, parts: tuple[str, ...], start: Path) -> Path | None:
+        place = start
         try:
             for part in parts:
                 here = place / part

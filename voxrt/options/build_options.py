@@ -103,6 +103,10 @@ class BuildOptions:
     variants: Sequence[str] = option(texts("NAME"), (), CONTENT,
         "Variants to build: the name of a material variant (glTF), or any number of /prim/path:set=variant (USD).",
         flags=("--variant",), is_rare=True, manifest="always")
+    opaque_from: float | None = option(real("A", low=0, high=1), None, CONTENT,
+        "Surfaces of lower opacity are left out, 0 to 1. The default is 0.5.",
+        details="The alpha cutoff or opacity threshold that an author gave a material decides in its place.",
+        is_rare=True, manifest="changed")
     colours: int = option(whole(1, 254, "K"), 32, COLOUR,
         "The largest number of materials made of textures and vertex colours, 1 to 254.",
         details="Materials of one colour are not counted and keep their colour.", manifest="always")

@@ -28,6 +28,7 @@ class BuildKeywords(TypedDict, total=False):
     time: float | None
     animation: str | None
     variants: Sequence[str]
+    opaque_from: float | None
     colours: int
     bake: bool
     sun: tuple[float, float, float]

@@ -66,9 +66,9 @@ def whole(low: int, high: int, metavar: str = "N") -> Kind:
     return Kind(metavar, read_whole, exact("whole", low, high))
 
 
-def real(metavar: str, *, above: float = -inf, below: float = inf) -> Kind:
-    """Make the kind of finite numbers between two."""
-    return Kind(metavar, read_number, exact("real", above=above, below=below), "{:g}".format)
+def real(metavar: str, *, above: float = -inf, below: float = inf, low: float = -inf, high: float = inf) -> Kind:
+    """Make the kind of finite numbers `low` to `high`, strictly between `above` and `below`."""
+    return Kind(metavar, read_number, exact("real", above=above, below=below, low=low, high=high), "{:g}".format)
 
 
 def one_of(choices: Sequence[str]) -> Kind:

@@ -11,6 +11,7 @@ from voxrt.voxelize.arguments import real_array, text, whole_array
 from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8
 from voxrt.voxelize.formats.material_table import MaterialTable
 from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
+from voxrt.voxelize.formats.opacity import OPAQUE_FROM
 from voxrt.voxelize.formats.scene_frame import scene_transform
 from voxrt.voxelize.warning_log import WarningLog
 
@@ -18,9 +19,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from voxrt.options.build_options import UpAxis
-
-OPAQUE_FROM = 0.5
-"""Faces of a lower opacity are left out."""
 
 _MOST = (1 << 31) - 1
 

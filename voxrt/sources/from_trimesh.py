@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Any, TypeGuard
 
 import numpy as np
 
-from voxrt.sources.from_arrays import OPAQUE_FROM, appearance_of_corners, triangles_of
+from voxrt.sources.from_arrays import appearance_of_corners, triangles_of
 from voxrt.voxelize import DEFAULT_COLOUR, Appearance, Scene, SceneObject, SurfaceAppearance, Texture
 from voxrt.voxelize.arguments import real_array
 from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8
 from voxrt.voxelize.formats.material_table import MaterialTable
 from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
+from voxrt.voxelize.formats.opacity import OPAQUE_FROM
 from voxrt.voxelize.formats.scene_frame import scene_transform
 from voxrt.voxelize.warning_log import WarningLog
 

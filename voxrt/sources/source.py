@@ -80,6 +80,7 @@ class Source:
             time=options.time,
             animation=options.animation,
             variants=tuple(options.variants),
+            opaque_from=options.opaque_from,
             allow_outside=options.allow_outside,
         )
 
@@ -88,7 +89,7 @@ class Source:
         from voxrt.sources.from_trimesh import is_trimesh, trimesh_scene  # noqa: PLC0415
 
         value, options = self.value, self.options
-        unused = {"time": options.time, "animation": options.animation, "variants": options.variants}
+        unused = {name: getattr(options, name) for name in ("time", "animation", "variants", "opaque_from")}
         if isinstance(value, Scene):
             scene, unused = value, unused | {"up": options.up, "unit": options.unit}
         elif is_trimesh(value):

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.scene import Scene
 
 
-def load_scene_toml(path: str | Path, *, allow_outside: bool = False) -> Scene:
+def load_scene_toml(path: str | Path, *, allow_outside: bool = False, opaque_from: float | None = None) -> Scene:
     """Read a scene file and the assets that it names.
 
     Parameters
@@ -54,11 +54,12 @@ def load_scene_toml(path: str | Path, *, allow_outside: bool = False) -> Scene:
         raise AssetError(path, f"cannot be read: {error.strerror}", fix="check the path and its permissions") from None
     except UnicodeDecodeError:
         raise AssetError(path, "is not UTF-8 text", fix="save it as UTF-8") from None
-    return _Builder(check_file(path, text), allow_outside=allow_outside).scene()
+    return _Builder(check_file(path, text), allow_outside=allow_outside, opaque_from=opaque_from).scene()
 
 
 class _Builder:
-    def __init__(self, checked: CheckedFile, *, allow_outside: bool) -> None:
+    def __init__(self, checked: CheckedFile, *, allow_outside: bool, opaque_from: float | None) -> None:
+        self._opaque_from = opaque_from
         self._checked = checked
         self._external_files = ExternalFiles.of(checked.path, allow_outside=allow_outside)
         self._assets: dict[tuple[object, ...], Scene] = {}
@@ -223,6 +224,7 @@ class _Builder:
                     time=asset.time,
                     animation=asset.animation,
                     variants=tuple(asset.variants),
+                    opaque_from=self._opaque_from,
                     allow_outside=self._external_files.allow_outside,
                 )
             except AssetError as error:

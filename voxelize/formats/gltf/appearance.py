@@ -12,6 +12,7 @@ from voxrt.voxelize.formats.gltf.accessors import as_unit_floats
 from voxrt.voxelize.formats.gltf.extensions import TEXTURE_TRANSFORM, VARIANTS
 from voxrt.voxelize.formats.gltf.materials import NO_MATERIAL, MaterialKey, MaterialProperties, material_properties
 from voxrt.voxelize.formats.gltf.schema import FileVariants, PrimitiveVariants, TextureTransform
+from voxrt.voxelize.formats.opacity import log_left_out
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -77,7 +78,7 @@ def read_appearance(
         if not faces or builder.add(span, key, properties):
             continue
         if properties.factor[3] < properties.cutoff:
-            document.log.add("transparent", "fully transparent faces were left out", faces)
+            log_left_out(document.log, properties.factor[3], properties.cutoff, document.opaque_from, faces)
             continue
         runs.append((span.start, span.stop, key))
         if key.index == NO_MATERIAL:

@@ -16,6 +16,7 @@ from voxrt.voxelize.formats.gltf.extensions import MESHOPT
 from voxrt.voxelize.formats.gltf.meshopt import CompressedView, decode
 from voxrt.voxelize.formats.gltf.meshopt_attributes import BadStreamError
 from voxrt.voxelize.formats.gltf.schema_errors import explain
+from voxrt.voxelize.formats.opacity import OPAQUE_FROM
 from voxrt.voxelize.warning_log import WarningLog
 
 if TYPE_CHECKING:
@@ -37,8 +38,9 @@ class Document:
     file that needs much. The sizes in the JSON are no limit: an accessor may have no bytes, or share them with others.
     """
 
-    def __init__(self, path: Path, *, allow_outside: bool = False) -> None:
+    def __init__(self, path: Path, *, allow_outside: bool = False, opaque_from: float = OPAQUE_FROM) -> None:
         self.path = path
+        self.opaque_from = opaque_from  # blended surfaces of a lower alpha are cut away
         self._external_files = ExternalFiles.of(path, allow_outside=allow_outside)
         self.gltf: Gltf
         self.gltf, self._binary = read_container(path)

@@ -20,6 +20,7 @@ from voxrt.voxelize.formats.gltf.textures import Textures
 from voxrt.voxelize.formats.gltf.visible_nodes import VisibleNodes
 from voxrt.voxelize.formats.material_table import MaterialTable
 from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
+from voxrt.voxelize.formats.opacity import OPAQUE_FROM
 from voxrt.voxelize.mesh import NO_TRIANGLES
 from voxrt.voxelize.scene import Scene, SceneObject
 
@@ -41,6 +42,7 @@ def load_gltf(
     animation: str | None = None,
     variants: tuple[str, ...] = (),
     allow_outside: bool = False,
+    opaque_from: float = OPAQUE_FROM,
 ) -> Scene:
     """Read a ``.gltf`` or ``.glb`` file.
 
@@ -56,6 +58,8 @@ def load_gltf(
         The name of the material variant to show; none for the default materials of its primitives.
     allow_outside
         Whether buffers and images may stand outside the file's folder.
+    opaque_from
+        Blended faces of lower opacity are left out.
 
     Raises
     ------
@@ -65,7 +69,7 @@ def load_gltf(
     DoesNotFitError
         More than 255 materials are used.
     """
-    document = Document(path, allow_outside=allow_outside)
+    document = Document(path, allow_outside=allow_outside, opaque_from=opaque_from)
     _check_required_extensions(document)
     refuse_misplaced(document)
     document.gltf = posed(document, time, animation)
@@ -84,7 +88,7 @@ def load_gltf(
     used = {key for own in surface_materials for _, _, key in own.runs}
     ids = number_materials(document, table, of_colliders | used)
     loaded = [_loaded_mesh(surface, own, ids) for surface, own in zip(surfaces, surface_materials, strict=True)]
-    meshes = dict(zip(mesh_keys, assign_materials(loaded, table, document.log), strict=True))
+    meshes = dict(zip(mesh_keys, assign_materials(loaded, table, document.log, opaque_from), strict=True))
     objects = tuple(
         thing
         for name, content in zip(nodes.names(contents), contents, strict=True)

@@ -21,9 +21,6 @@ if TYPE_CHECKING:
 NO_MATERIAL = -1
 """The index of the material of faces that have none."""
 
-BLEND_CUTOFF = 0.5
-"""Blended surfaces are cut away where their alpha is below this."""
-
 
 @dataclass(frozen=True, slots=True, order=True)
 class MaterialKey:
@@ -61,6 +58,8 @@ def material_properties(document: Document, key: MaterialKey) -> MaterialPropert
     if glossy is not None:
         factor, texture = glossy.diffuse_factor, glossy.diffuse_texture
         where = f"extensions.{SPECULAR_GLOSSINESS}.diffuseTexture"
+    if max(factor[:3]) <= 0 < max(material.emissive_factor):  # it reflects nothing, and shows what it emits
+        factor, texture, where = (*material.emissive_factor, factor[3]), material.emissive_texture, "emissiveTexture"
     red, green, blue, alpha = (min(max(component, 0.0), 1.0) for component in factor)
     return MaterialProperties(
         name=authored.voxrt_material or material.name or place,
@@ -68,7 +67,7 @@ def material_properties(document: Document, key: MaterialKey) -> MaterialPropert
         factor=(red, green, blue, alpha),
         texture=texture,
         place=f"{place}.{where}",
-        cutoff={"OPAQUE": 0.0, "MASK": material.alpha_cutoff, "BLEND": BLEND_CUTOFF}[material.alpha_mode],
+        cutoff={"OPAQUE": 0.0, "MASK": material.alpha_cutoff, "BLEND": document.opaque_from}[material.alpha_mode],
         mirror=key.mirrored or bool(authored.voxrt_reflect),
     )
 

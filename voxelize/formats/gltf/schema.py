@@ -217,6 +217,8 @@ class Material(Named, frozen=True, kw_only=True):
 
     pbr_metallic_roughness: Roughness = Roughness()
     normal_texture: NormalTextureInfo | None = None
+    emissive_factor: Vec3 = (0.0, 0.0, 0.0)
+    emissive_texture: TextureInfo | None = None
     alpha_mode: Literal["OPAQUE", "MASK", "BLEND"] = "OPAQUE"
     alpha_cutoff: Annotated[float, Meta(ge=0.0)] = 0.5
 

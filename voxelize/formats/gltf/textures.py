@@ -75,4 +75,4 @@ class Textures:
             data = document.view(image.buffer_view, f"{here}.bufferView").tobytes()
         else:
             raise document.error(here, "has neither a uri nor a buffer view")
-        return decode_image(data, document.path, here)
+        return decode_image(data, document.path, here, document.log)

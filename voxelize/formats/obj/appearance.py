@@ -10,8 +10,10 @@ import numpy as np
 from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
 from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8
 from voxrt.voxelize.colour.texture import Texture
-from voxrt.voxelize.formats.image_file import read_image
+from voxrt.voxelize.formats.image_file import INSTEAD, read_image
 from voxrt.voxelize.formats.obj.mtl import MtlMaterial, MtlTexture, read_mtl
+from voxrt.voxelize.formats.obj.text import spellings
+from voxrt.voxelize.formats.opacity import log_left_out
 from voxrt.voxelize.materials import DEFAULT_COLOUR
 
 if TYPE_CHECKING:
@@ -26,9 +28,6 @@ if TYPE_CHECKING:
     from voxrt.voxelize.formats.obj.text import Text
     from voxrt.voxelize.warning_log import WarningLog
 
-OPAQUE_FROM = 0.5
-"""Faces of materials of lower opacity are left out."""
-
 
 @dataclass(eq=False, slots=True)
 class FaceAppearance:
@@ -40,10 +39,17 @@ class FaceAppearance:
     entries: list[Appearance] = field(default_factory=list)
     # How each entry scales and moves texture coordinates: ``map_Kd -s`` and ``-o``.
     image_placements: list[MtlTexture | None] = field(default_factory=list)
+    left_out: dict[str, MtlMaterial] = field(default_factory=dict)  # by name: materials that are not opaque enough
 
 
 def appearance_of_faces(
-    text: Text, statements: Statements, external_files: ExternalFiles, table: MaterialTable, log: WarningLog
+    text: Text,
+    statements: Statements,
+    external_files: ExternalFiles,
+    table: MaterialTable,
+    log: WarningLog,
+    *,
+    opaque_from: float,
 ) -> FaceAppearance:
     """Return the appearance of every face: the texture of its material, else its vertices' colours, else ``Kd``."""
     library = _libraries(external_files, statements, log)
@@ -51,13 +57,15 @@ def appearance_of_faces(
     turn = np.searchsorted(lines, statements.face_lines) - 1  # the last usemtl before each face; -1 for none
     coloured = _coloured_faces(statements)
     face_appearance = FaceAppearance(np.zeros(len(turn), dtype=np.uint8), np.full(len(turn), -1, dtype=np.int32))
-    builder = _AppearanceBuilder(text, face_appearance, external_files, log)
+    builder = _AppearanceBuilder(text, face_appearance, external_files, log, opaque_from=opaque_from)
     for index in (np.flatnonzero(np.bincount(turn + 1)) - 1).tolist():
         faces = np.flatnonzero(turn == index)
         name = statements.materials[index][1] if index >= 0 else ""
+        name = next((one for one in spellings(name) if one in library), name)
         material = library.get(name)
-        if material is not None and material.opacity < OPAQUE_FROM:
-            log.add("transparent", f"faces of materials less opaque than {OPAQUE_FROM} were left out", len(faces))
+        if material is not None and material.opacity < opaque_from:
+            log_left_out(log, material.opacity, opaque_from, opaque_from, len(faces))
+            face_appearance.left_out.setdefault(material.name, material)
             continue
         if material is not None and builder.add_textured(faces, material):
             continue
@@ -114,13 +122,20 @@ def _coloured_faces(statements: Statements) -> NDArray[np.bool_]:
 
 class _AppearanceBuilder:
     def __init__(
-        self, text: Text, face_appearance: FaceAppearance, external_files: ExternalFiles, log: WarningLog
+        self,
+        text: Text,
+        face_appearance: FaceAppearance,
+        external_files: ExternalFiles,
+        log: WarningLog,
+        *,
+        opaque_from: float,
     ) -> None:
         self._text = text
         self._external_files = external_files
         self._faces = face_appearance
         self._log = log
-        self._images: dict[Path, NDArray[np.uint8]] = {}
+        self._opaque_from = opaque_from
+        self._images: dict[Path, NDArray[np.uint8] | None] = {}
         self._rows: dict[tuple[str, bool], int] = {}
 
     def add_textured(self, faces: NDArray[np.int64], material: MtlMaterial) -> bool:
@@ -130,8 +145,8 @@ class _AppearanceBuilder:
         """
         key = (material.name, True)
         if key not in self._rows:
-            colour = self._image("map_Kd", material.texture, len(faces))
-            opacity = self._image("map_d", material.opacity_texture, len(faces))
+            colour = self._image("map_Kd", material.texture, material.folder, len(faces))
+            opacity = self._image("map_d", material.opacity_texture, material.folder, len(faces))
             placement = material.opacity_texture if colour is None else material.texture
             if placement is None or (colour is None and opacity is None):
                 return False
@@ -145,22 +160,27 @@ class _AppearanceBuilder:
             wrap: Wrap = "clamp" if placement.clamp else "repeat"
             cutoff = 0.0
             if opacity is not None:
-                colour, cutoff = _with_opacity(colour, opacity), OPAQUE_FROM
+                colour, cutoff = _with_opacity(colour, opacity), self._opaque_from
             appearance = Appearance(material.name, (*factor, 1.0), Texture(colour, (wrap, wrap)), cutoff)
             self._rows[key] = self._entry(appearance, placement)
         self._faces.rows[faces] = self._rows[key]
         return True
 
-    def _image(self, keyword: str, placement: MtlTexture | None, faces: int) -> NDArray[np.uint8] | None:
-        """Return the pixels of a texture; None, with a warning for `faces` faces, where it cannot be read."""
+    def _image(self, keyword: str, placement: MtlTexture | None, folder: Path, faces: int) -> NDArray[np.uint8] | None:
+        """Return the pixels of a texture; None, with a warning for `faces` faces, where it cannot be read.
+
+        It is looked for beside the material library in `folder`, then beside the file.
+        """
         if placement is None:
             return None
-        files, name, instead = self._external_files, placement.name, "; its material's own value was used"
-        found = files.reported(files.find_exported(name), "texture", name, self._log, count=faces, instead=instead)
+        files, name = self._external_files, placement.name
+        places = [files.find_exported(one, start) for one in spellings(name) for start in (folder, None)]
+        found = next((place for place in places if place is not None), None)
+        found = files.reported(found, "texture", name, self._log, count=faces, instead=INSTEAD)
         if found is None:
             return None
         if found not in self._images:
-            self._images[found] = read_image(found, self._text.path, f"{keyword} {name}")
+            self._images[found] = read_image(found, self._text.path, f"{keyword} {name}", self._log, faces)
         return self._images[found]
 
     def add_coloured(self, faces: NDArray[np.int64], name: str, material: MtlMaterial | None) -> None:
@@ -227,12 +247,15 @@ def _libraries(external_files: ExternalFiles, statements: Statements, log: Warni
     seen: set[Path] = set()
     for _, argument in statements.libraries:
         # A line holds one name with blanks, or several names.
-        whole = external_files.find_exported(argument)
-        words = argument.split()
-        names = [(whole, argument)] if whole else [(external_files.find_exported(word), word) for word in words]
+        whole = [(external_files.find_exported(one), one) for one in spellings(argument)]
+        words = whole[-1][1].split()
+        names = [one for one in whole if one[0]][:1] or [(external_files.find_exported(word), word) for word in words]
         for found, name in names:
             file = external_files.reported(found, "material library", name, log)
             if file is not None and file not in seen:
                 seen.add(file)
                 library |= read_mtl(file, log)
+    for name, material in list(library.items()):
+        for one in spellings(name):
+            library.setdefault(one, material)
     return library

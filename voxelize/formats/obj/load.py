@@ -16,26 +16,35 @@ from voxrt.voxelize.formats.obj.appearance import appearance_of_faces, surface_a
 from voxrt.voxelize.formats.obj.objects import compact, split_objects
 from voxrt.voxelize.formats.obj.statements import Statements, read_normals, read_statements, texture_coordinates
 from voxrt.voxelize.formats.obj.text import Text, read_text
+from voxrt.voxelize.formats.opacity import OPAQUE_FROM
 from voxrt.voxelize.formats.scene_frame import FARTHEST, in_range, scene_transform
 from voxrt.voxelize.formats.triangulation import triangulate_corners
+from voxrt.voxelize.formats.written_numbers import is_number, not_a_number
 from voxrt.voxelize.scene import Scene, SceneObject
 from voxrt.voxelize.warning_log import WarningLog
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from numpy.typing import NDArray
 
+    from voxrt.voxelize.formats.obj.mtl import MtlMaterial
+
 
 def load_obj(
-    path: str | Path, *, up: str | None = None, unit: float | None = None, allow_outside: bool = False
+    path: str | Path,
+    *,
+    up: str | None = None,
+    unit: float | None = None,
+    allow_outside: bool = False,
+    opaque_from: float = OPAQUE_FROM,
 ) -> Scene:
     """Read a Wavefront OBJ file, its material libraries and textures.
 
-    Each ``o`` starts an object. In a file without ``o``, each ``g`` does; groups that share vertices are parts of one
-    surface and stay one object. ``Kd`` and vertex colours are read as sRGB, as most programs do (the format does not
-    define it). A texture replaces ``Kd``; vertex colours are multiplied with ``Kd``. Faces of materials with an opacity
-    below 0.5 are left out. Names of materials survive a missing library.
+    Each ``o`` starts an object. In a file without ``o``, each ``g`` does; groups that share vertices are parts of
+    one surface and stay one object. ``Kd`` and vertex colours are read as sRGB, as most programs do (the format
+    does not define it). A texture replaces ``Kd``; vertex colours are multiplied with ``Kd``. Names of materials
+    survive a missing library.
 
     Parameters
     ----------
@@ -47,6 +56,8 @@ def load_obj(
         Metres per unit of the file; None for 1.
     allow_outside
         Whether material libraries and textures may stand outside the file's folder.
+    opaque_from
+        Faces of lower opacity are left out.
 
     Returns
     -------
@@ -67,7 +78,7 @@ def load_obj(
     _refuse_unreadable_positions(text, statements, log)
     table = MaterialTable()
     external_files = ExternalFiles.of(path, allow_outside=allow_outside)
-    appearance = appearance_of_faces(text, statements, external_files, table, log)
+    appearance = appearance_of_faces(text, statements, external_files, table, log, opaque_from=opaque_from)
     uv = None
     if any(placement is not None for placement in appearance.image_placements):
         uv, has_coordinates = texture_coordinates(text, statements)
@@ -85,7 +96,7 @@ def load_obj(
     if not visible.all():
         corners, faces = corners[visible], faces[visible]
     if not len(faces):
-        raise AssetError(path, "has no visible faces", fix="make its materials opaque or export its polygons")
+        raise _nothing_visible(path, appearance.left_out.values(), opaque_from)
     triangles = statements.corners[corners].astype(np.int32)
     normals = read_normals(text, statements, log)
     parts = list(split_objects(path.stem, statements, triangles, faces))
@@ -101,12 +112,26 @@ def load_obj(
     transform = scene_transform(up, unit)
     objects = tuple(
         SceneObject(name, mesh, transform)
-        for (name, _), mesh in zip(parts, assign_materials(loaded, table, log), strict=True)
+        for (name, _), mesh in zip(parts, assign_materials(loaded, table, log, opaque_from), strict=True)
         if len(mesh.triangles)
     )
     if not objects:
-        raise AssetError(path, "has no visible faces", fix="make its textures opaque")
+        raise AssetError(
+            path, "has no visible faces", fix="make its textures opaque, or build with a lower --opaque-from"
+        )
     return Scene(path.stem, objects, table.materials(), log.warnings())
+
+
+def _nothing_visible(path: Path, left_out: Iterable[MtlMaterial], opaque_from: float) -> AssetError:
+    """Return the error for a file of which no face is opaque enough."""
+    first = next(iter(left_out), None)
+    if first is None:
+        return AssetError(path, "has no faces of three corners or more", fix="export it with its polygons")
+    problem = f"no face is as opaque as {opaque_from:g}: material {first.name!r} has {first.opacity_statement!r}"
+    opaque = "Tr 0" if first.opacity_statement.lower().startswith("tr") else "d 1"
+    return AssetError(
+        path, problem, fix=f"write {opaque!r} in its place, or build with --opaque-from {first.opacity:g}"
+    )
 
 
 def _textured(rows: NDArray[np.int32], image_placements: Sequence[object]) -> NDArray[np.bool_]:
@@ -122,10 +147,14 @@ def _refuse_unreadable_positions(text: Text, statements: Statements, log: Warnin
     at_corner = np.flatnonzero(broken[statements.corners])
     if len(at_corner):
         face = int(np.searchsorted(np.cumsum(statements.counts), at_corner[0], side="right"))
-        vertex = statements.corners[at_corner[0]] + 1
+        vertex = int(statements.corners[at_corner[0]])
+        line = int(np.flatnonzero(text.is_statement("v "))[vertex])
+        wrong = next((word for word in text.value_words(line)[:3] if not is_number(word)), None)
+        if wrong is not None:
+            raise not_a_number(text.path, wrong, text.place(line))
         raise AssetError(
             text.path,
-            f"vertex {vertex} of a face has a coordinate that is not a number below {FARTHEST:g}",
+            f"vertex {vertex + 1} of a face has a coordinate that is not a number below {FARTHEST:g}",
             place=text.place(int(statements.face_lines[face])),
             fix="export it again",
         )

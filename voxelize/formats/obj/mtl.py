@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.formats.obj.text import read_text
+from voxrt.voxelize.formats.obj.text import read_text, spellings
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -64,9 +64,10 @@ class MtlMaterial:
     """One material of a library."""
 
     name: str
+    folder: Path  # of its library
     colour: tuple[float, float, float] | None = None  # ``Kd``, three reals, as written; None where there is none
     opacity: float = 1.0  # ``d``, or 1 - ``Tr`` where there is no ``d``
-    has_d: bool = False
+    opacity_statement: str = ""  # the statement that gave it
     texture: MtlTexture | None = None  # ``map_Kd``, or None
     opacity_texture: MtlTexture | None = None  # ``map_d``, or None
 
@@ -77,10 +78,9 @@ def read_mtl(path: Path, log: WarningLog) -> dict[str, MtlMaterial]:
     materials: dict[str, MtlMaterial] = {}
     current: MtlMaterial | None = None
     for line in range(len(text.starts)):
-        keyword, _, argument = text.words(line).replace("\t", " ").partition(" ")
-        keyword, argument = keyword.lower(), argument.strip()
+        keyword, argument = text.statement(line)
         if keyword == "newmtl":
-            current = MtlMaterial(argument)
+            current = MtlMaterial(argument, path.parent)
             if argument in materials:
                 log.add("repeated-material", f"{path.name} names a material twice; the first was used")
             materials.setdefault(argument, current)
@@ -99,15 +99,18 @@ class _Place:
 
 
 def _set(material: MtlMaterial, keyword: str, argument: str, place: _Place) -> None:
+    if keyword in ("kd", "d", "tr"):
+        argument = spellings(argument)[-1]
     if keyword == "kd":
         material.colour = _colour(argument, place)
     elif keyword == "d":
         material.opacity = _real(argument.split()[-1:], place)
-        material.has_d = True
+        material.opacity_statement = f"d {argument}"
     elif keyword == "tr":
         transparency = _real(argument.split()[-1:], place)
-        if not material.has_d:  # which the format defines; writers disagree on Tr
+        if not material.opacity_statement.startswith("d"):  # which the format defines; writers disagree on Tr
             material.opacity = 1.0 - transparency
+            material.opacity_statement = f"Tr {argument}"
     elif keyword == "map_kd":
         material.texture = _texture(keyword, argument, place)
     elif keyword == "map_d":

@@ -201,9 +201,7 @@ def _faces(
 def _named(text: Text, lines: NDArray[np.int64], log: WarningLog) -> dict[str, list[tuple[int, str]]]:
     named: dict[str, list[tuple[int, str]]] = {"o": [], "g": [], "usemtl": [], "mtllib": []}
     for line in lines.tolist():
-        words = text.words(line)
-        keyword, _, argument = words.replace("\t", " ").partition(" ")
-        keyword, argument = keyword.lower(), argument.strip()
+        keyword, argument = text.statement(line)
         if keyword in named:
             named[keyword].append((line, argument))
         elif keyword in ("l", "p"):

@@ -24,6 +24,8 @@ _Number = TypeVar("_Number", np.float64, np.int64)
 # Longer numbers exceed 64 bits.
 _INDEX = re.compile(rb"[+-]?\d{1,18}")
 
+_MOST_MARKS = 3  # in a name that a comment may follow
+
 _BOMS = (
     (codecs.BOM_UTF8, "utf-8"),
     (codecs.BOM_UTF32_LE, "utf-32-le"),  # before UTF-16, whose mark it begins with
@@ -59,10 +61,32 @@ class Text:
         found: NDArray[np.bool_] = (first == ord(keyword[0])) & ends
         return found
 
-    def words(self, line: int) -> str:
-        """Return the text of line `line` without its comment and surrounding blanks."""
-        raw = self.data[self.starts[line] : self.ends[line]]
-        return decode(raw.partition(b"#")[0]).strip()
+    def value_words(self, line: int) -> list[bytes]:
+        """Return the words of line `line` after its keyword, without a comment."""
+        return self.data[self.starts[line] : self.ends[line]].partition(b"#")[0].split()[1:]
+
+    def statement(self, line: int) -> tuple[str, str]:
+        """Return the keyword of line `line`, in lower case, and its value; two empty strings for a comment.
+
+        A name may contain ``#``: it begins a comment at the beginning of a line or of a value alone, as in the readers
+        of Assimp, Blender and tinyobjloader.
+        """
+        keyword, _, value = decode(self.data[self.starts[line] : self.ends[line]]).replace("\t", " ").partition(" ")
+        value = value.strip()
+        if keyword.startswith("#"):
+            return "", ""
+        return keyword.strip().lower(), "" if value.startswith("#") else value
+
+
+def spellings(value: str) -> list[str]:
+    """Return a name, then what it is if a comment follows it, which white space and ``#`` begin: the longest first.
+
+    >>> spellings("Plastic #1 # of the roof")
+    ['Plastic #1 # of the roof', 'Plastic #1', 'Plastic']
+    """
+    ends = [match.start() for match in re.finditer(r"\s+#", value)]
+    few = [*ends[:1], *ends[1:][-_MOST_MARKS:]]
+    return [value, *(value[:end] for end in reversed(few))]
 
 
 def decode(raw: bytes) -> str:

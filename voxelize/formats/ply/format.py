@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.formats.written_numbers import read_reals
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -152,7 +153,7 @@ def _ascii(path: Path, body: bytes, elements: list[_Element]) -> dict[str, Table
             block = words[at : at + width * element.count]
             if len(block) < width * element.count:
                 raise _cut_short(path, element)
-            values = _numbers(path, element, block).reshape(element.count, width)
+            values = read_reals(path, block, element.name).reshape(element.count, width)
             tables[element.name] = {one.name: _declared(one, values[:, i]) for i, one in enumerate(element.properties)}
             at += width * element.count
             continue
@@ -170,21 +171,12 @@ def _ascii(path: Path, body: bytes, elements: list[_Element]) -> dict[str, Table
                 column.extend(words[at : at + length])
                 at += length
         tables[element.name] = {
-            one.name: ListColumn(np.array(lengths, dtype=np.int64), _numbers(path, element, column))
+            one.name: ListColumn(np.array(lengths, dtype=np.int64), read_reals(path, column, element.name))
             if one.count_kind
-            else _declared(one, _numbers(path, element, column))
+            else _declared(one, read_reals(path, column, element.name))
             for column, lengths, one in zip(columns, counts, element.properties, strict=True)
         }
     return tables
-
-
-def _numbers(path: Path, element: _Element, words: list[bytes]) -> NDArray[np.float64]:
-    try:
-        if max(map(len, words), default=0) > _LONGEST_NUMBER:  # each word of the array takes the longest one's space
-            raise ValueError(f"a word of more than {_LONGEST_NUMBER} characters is not a number")  # noqa: TRY301
-        return np.array(words, dtype=np.bytes_).astype(np.float64) if words else np.zeros(0)
-    except ValueError as error:
-        raise AssetError(path, f"{element.name}: {error}", fix="export it again") from None
 
 
 def _declared(one: _Property, values: NDArray[np.float64]) -> Column:

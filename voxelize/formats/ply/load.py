@@ -13,6 +13,7 @@ from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.external_files import ExternalFiles, read_asset
 from voxrt.voxelize.formats.material_table import MaterialTable
 from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
+from voxrt.voxelize.formats.opacity import OPAQUE_FROM
 from voxrt.voxelize.formats.ply.format import Column, ListColumn, Table, read_ply
 from voxrt.voxelize.formats.ply.painting import image_of_faces, read_textures, surface_appearance, texture_coordinates
 from voxrt.voxelize.formats.scene_frame import FARTHEST, in_range, scene_transform
@@ -32,7 +33,12 @@ _CHANNELS = (
 
 
 def load_ply(
-    path: str | Path, *, up: str | None = None, unit: float | None = None, allow_outside: bool = False
+    path: str | Path,
+    *,
+    up: str | None = None,
+    unit: float | None = None,
+    allow_outside: bool = False,
+    opaque_from: float = OPAQUE_FROM,
 ) -> Scene:
     """Read a PLY file: vertices and polygons, with a texture, or with the colours of either, read as sRGB.
 
@@ -46,6 +52,8 @@ def load_ply(
         Metres per unit of the file; None for 1.
     allow_outside
         Whether textures may stand outside the file's folder.
+    opaque_from
+        Faces of lower opacity are left out.
 
     Raises
     ------
@@ -66,15 +74,19 @@ def load_ply(
     coordinates = texture_coordinates(tables, corners, kept, counts, log) if textures else None
     if textures and coordinates is None:
         log.add("texture", "the file names a texture and has no texture coordinates: the texture was not used")
-    appearance = surface_appearance(textures, coordinates, image_of_faces(tables, kept[faces]), by_colour, cut)
+    appearance = surface_appearance(
+        textures, coordinates, image_of_faces(tables, kept[faces]), by_colour, cut, opaque_from=opaque_from
+    )
     materials = np.zeros(len(triangles), dtype=np.uint8)
     bare = np.ones(len(triangles), dtype=np.bool_) if appearance is None else appearance.rows < 0
     if bare.any():
         materials[bare] = table.default(log, int(np.count_nonzero(np.bincount(faces[bare]))))
     loaded = LoadedMesh(positions, triangles, materials, appearance, _normals(tables["vertex"], triangles))
-    (mesh,) = assign_materials([loaded], table, log)
+    (mesh,) = assign_materials([loaded], table, log, opaque_from)
     if not len(mesh.triangles):
-        raise AssetError(path, "has no visible faces", fix="give its colours an opacity of 0.5 or more")
+        raise AssetError(
+            path, "has no visible faces", fix="make its colours opaque, or build with a lower --opaque-from"
+        )
     one = SceneObject(path.stem, mesh, scene_transform(up, unit))
     return Scene(path.stem, (one,), table.materials(), log.warnings())
 

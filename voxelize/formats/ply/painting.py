@@ -25,9 +25,6 @@ if TYPE_CHECKING:
     from voxrt.voxelize.formats.ply.format import Table
     from voxrt.voxelize.warning_log import WarningLog
 
-OPAQUE_FROM = 0.5
-"""Faces of lower opacity are left out."""
-
 _OF_VERTICES = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"))
 
 
@@ -38,7 +35,8 @@ def read_textures(
     textures: list[Texture | None] = []
     for name in names:
         found = external_files.reported(external_files.find_exported(name), "texture", name, log)
-        textures.append(None if found is None else Texture(read_image(found, path, f"texture {name}")))
+        pixels = None if found is None else read_image(found, path, f"texture {name}", log)
+        textures.append(None if pixels is None else Texture(pixels))
     return textures if any(textures) else []
 
 
@@ -83,12 +81,14 @@ def surface_appearance(
     images: NDArray[np.int64],
     by_colour: tuple[str, NDArray[np.float64]] | None,
     cut: NDArray[np.int64],
+    *,
+    opaque_from: float,
 ) -> SurfaceAppearance | None:
     """Return the appearance of triangles: a texture where there is one, else colours; None for neither.
 
     `images` is from :func:`image_of_faces`, for the triangles. `by_colour` says what the colours are, and has linear
     colour and alpha of the triangles' corners: float64, shape (T, 3, 4). `cut`, int64, shape (T, 3), are the triangles'
-    corners among all corners.
+    corners among all corners. Surfaces are cut away where they are less opaque than `opaque_from`.
     """
     rows = np.full(len(cut), -1, dtype=np.int32)
     uv = np.zeros((len(cut), 3, 2))
@@ -101,7 +101,7 @@ def surface_appearance(
                 continue
             rows[here] = len(entries)
             name = "texture" if len(textures) == 1 else f"texture {index}"
-            cutoff = OPAQUE_FROM if (texture.pixels[:, :, 3] < 255).any() else 0.0
+            cutoff = opaque_from if (texture.pixels[:, :, 3] < 255).any() else 0.0
             entries.append(Appearance(name, texture=texture, cutoff=cutoff))
         uv[rows >= 0] = coordinates[cut[rows >= 0]]
     bare = rows < 0
@@ -109,7 +109,7 @@ def surface_appearance(
         name, linear = by_colour
         rows[bare] = len(entries)
         colours[bare] = linear[bare]
-        entries.append(Appearance(name, cutoff=OPAQUE_FROM if (colours[bare, :, 3] < 1.0).any() else 0.0))
+        entries.append(Appearance(name, cutoff=opaque_from if (colours[bare, :, 3] < 1.0).any() else 0.0))
     return SurfaceAppearance(tuple(entries), rows, uv, colours) if entries else None
 
 

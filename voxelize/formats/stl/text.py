@@ -9,6 +9,7 @@ import numpy as np
 
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.obj.text import Text, as_text, real_rows
+from voxrt.voxelize.formats.written_numbers import read_reals
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -79,11 +80,8 @@ def _by_words(path: Path, data: bytes) -> list[tuple[bytes, NDArray[np.float64]]
         name, body = head["name"], data[head.end() : end]
         place = f"solid {name.decode('utf-8', errors='replace').strip()!r}"
         words = _VERTEX.findall(body)
-        if len(words) % 3 or len(words) // 3 != len(re.findall(rb"\bendfacet\b", body, re.IGNORECASE)):
+        if len(words) % 3 or len(words) // 3 != len(re.findall(rb"\bend[ \t]*facet\b", body, re.IGNORECASE)):
             raise AssetError(path, "has a facet that is not a triangle", place=place, fix="export it again")
-        try:
-            corners = np.array(words, dtype=np.bytes_).astype(np.float64).reshape(-1, 3)
-        except ValueError as error:
-            raise AssetError(path, f"has a vertex that is not a number: {error}", place=place) from None
+        corners = read_reals(path, [word for vertex in words for word in vertex], place).reshape(-1, 3)
         solids.append((name, corners))
     return solids

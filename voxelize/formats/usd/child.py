@@ -49,7 +49,12 @@ def _reply(path: Path, request: Request) -> list[bytes | memoryview]:
         from voxrt.voxelize.formats.usd.stage_scene import read_stage  # noqa: PLC0415 - within the limits
 
         scene = read_stage(
-            path, allowance, variants=request.variants, time=request.time, allow_outside=request.allow_outside
+            path,
+            allowance,
+            variants=request.variants,
+            time=request.time,
+            allow_outside=request.allow_outside,
+            opaque_from=request.opaque_from,
         )
         return scene_bytes(scene)
     except AssetError as error:

@@ -88,7 +88,7 @@ class Images:
                     self._allowance.add(found.stat().st_size)
                 opened = Ar.GetResolver().OpenAsset(Ar.ResolvedPath(file))
                 if opened:
-                    self._pixels[file] = decode_image(bytes(opened.GetBuffer()), self._path, Path(file).name)
+                    self._pixels[file] = decode_image(bytes(opened.GetBuffer()), self._path, Path(file).name, self._log)
         return self._pixels[file]
 
 

@@ -19,6 +19,8 @@ import msgspec
 import numpy as np
 
 from voxrt.voxelize.errors import AssetError, DoesNotFitError
+from voxrt.voxelize.formats.external_files import LFS_POINTER, refuse_pointer
+from voxrt.voxelize.formats.opacity import OPAQUE_FROM
 from voxrt.voxelize.formats.scene_message import (
     LENGTHS,
     AssetErrorMessage,
@@ -51,6 +53,7 @@ def read_isolated(
     variants: Sequence[str] = (),
     time: float | None = None,
     allow_outside: bool = False,
+    opaque_from: float = OPAQUE_FROM,
     limits: Limits | None = None,
 ) -> Scene:
     """Read a USD stage in a process of its own, within limits on its memory and its time.
@@ -69,6 +72,8 @@ def read_isolated(
         Seconds after the stage's start; None for the start.
     allow_outside
         Whether layers and textures may stand outside the file's folder.
+    opaque_from
+        Faces of lower opacity are left out, unless their material has an opacity threshold of its own.
     limits
         What reading a small file may take; larger files may take more. None for the limits of this machine.
 
@@ -85,12 +90,14 @@ def read_isolated(
     DoesNotFitError
         More than 255 materials or a million objects.
     """
+    _refuse_pointer(path)
     limits = Limits.of_this_machine() if limits is None else limits
     request = Request(
         parent=os.getpid(),
         variants=tuple(variants),
         time=time,
         allow_outside=allow_outside,
+        opaque_from=opaque_from,
         memory=limits.memory,
         most_memory=limits.most_memory,
         seconds=limits.seconds,
@@ -123,6 +130,14 @@ def read_isolated(
     if isinstance(found, Scene):
         return found
     raise _error(path, found, limits)
+
+
+def _refuse_pointer(path: Path) -> None:
+    try:
+        with path.open("rb") as file:
+            refuse_pointer(path, file.read(len(LFS_POINTER)))
+    except OSError as error:
+        raise AssetError(path, f"cannot be read: {error.strerror}", fix="check the path and its permissions") from None
 
 
 def _receive(pipe: IO[bytes], most: int) -> tuple[bytes, NDArray[np.uint8]] | None:

@@ -50,6 +50,7 @@ class Request(msgspec.Struct, frozen=True, kw_only=True):
     variants: tuple[str, ...]
     time: float | None
     allow_outside: bool
+    opaque_from: float
     memory: int
     most_memory: int
     seconds: float

@@ -10,6 +10,7 @@ from pxr import Usd, UsdShade
 
 from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
 from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.formats.opacity import log_left_out
 from voxrt.voxelize.formats.usd import primvars
 from voxrt.voxelize.formats.usd.images import image_coordinates
 from voxrt.voxelize.formats.usd.shading import NO_SHADING, Shading, display_srgb, read_shading
@@ -36,6 +37,7 @@ class Materials:
     table: MaterialTable
     log: WarningLog
     time: Usd.TimeCode
+    opaque_from: float  # faces of lower opacity are left out, unless their material has a threshold
     _shadings: dict[str, Shading] = field(default_factory=dict)
 
     def shadings_of_faces(self, prim: Usd.Prim, surface: Surface) -> tuple[list[Shading], NDArray[np.int32]]:
@@ -72,9 +74,9 @@ class Materials:
         for row, shading in enumerate(shadings):
             here = by_triangle == row
             faces = int((rows == row).sum())
-            if shading.alpha is None and shading.opacity < shading.cutoff:
-                message = "faces of materials below their opacity threshold (0.5 by default) were left out"
-                self.log.add("transparent", message, faces)
+            cutoff = shading.threshold or self.opaque_from
+            if shading.alpha is None and shading.opacity < cutoff:
+                log_left_out(self.log, shading.opacity, cutoff, self.opaque_from, faces)
                 continue
             if shading.image is not None or shading.alpha is not None:
                 textured = self._textured(prim, surface, shading, faces)
@@ -155,7 +157,7 @@ class Materials:
             self.log.add("texture", message, faces)
         plain = shading.colour if shading.image is None and shading.colour else (1.0, 1.0, 1.0)
         opacity = 1.0 if shading.alpha is not None else shading.opacity
-        cutoff = shading.cutoff if shading.alpha is not None else 0.0
+        cutoff = 0.0 if shading.alpha is None else shading.threshold or self.opaque_from
         return Appearance(shading.name or "texture", (*plain, opacity), texture, cutoff), image_coordinates(
             stored, source
         )

@@ -17,9 +17,6 @@ if TYPE_CHECKING:
 
 Linear: TypeAlias = tuple[float, float, float]
 
-BLEND_CUTOFF = 0.5
-"""A surface is cut away where its opacity is below this, unless its material has an opacity threshold."""
-
 _FALLBACK_DIFFUSE: Linear = (0.18, 0.18, 0.18)  # UsdPreviewSurface's own
 
 # Names of the base colour, of UsdPreviewSurface and other shaders.
@@ -27,6 +24,7 @@ _COLOUR_INPUTS = (
     *("diffuseColor", "base_color", "baseColor", "diffuse_color_constant", "diffuse_reflection_color"),
     *("diffuse_color", "color"),
 )
+_EMISSION_INPUTS = ("emissiveColor", "emission_color", "emission", "emissive_color")
 _CONTEXTS = ("", "mtlx", "mdl", "ri", "glslfx")
 _WRAPS: dict[str, Wrap] = {"repeat": "repeat", "mirror": "mirror", "clamp": "clamp", "black": "clamp"}
 
@@ -58,7 +56,7 @@ class Shading:
     name: str | None  # the author's name; None for faces without any colour
     colour: Linear | None = None  # linear; used where a texture or primvar is missing. None where the author gave none.
     opacity: float = 1.0  # 0 … 1
-    cutoff: float = BLEND_CUTOFF  # faces are cut away where their opacity is below it
+    threshold: float = 0.0  # faces are cut away where their opacity is below it; 0 where the author gave none
     image: ImageSource | None = None  # a texture for the colour
     alpha: ImageSource | None = None  # a texture for the opacity
     primvar: str | None = None  # the name of the primvar that gives the colour
@@ -77,6 +75,9 @@ def read_shading(material: UsdShade.Material, time: Usd.TimeCode, log: WarningLo
     threshold = _input(shader, ("opacityThreshold",), time, log)
     opacity = _input(shader, ("opacity",), time, log)
     colour = _input(shader, _COLOUR_INPUTS, time, log)
+    if colour is not None and colour.is_black():
+        emitted = _input(shader, _EMISSION_INPUTS, time, log)
+        colour = emitted if emitted and not emitted.is_black() else colour  # what reflects nothing shows what it emits
     plain = colour.value if colour else None
     is_preview = shader.GetIdAttr().Get() == "UsdPreviewSurface"
     if plain is None and colour is not None and colour.image is None and colour.primvar is None and is_preview:
@@ -89,7 +90,7 @@ def read_shading(material: UsdShade.Material, time: Usd.TimeCode, log: WarningLo
         name,
         plain,
         opacity.value[0] if opacity and opacity.value else 1.0,
-        (threshold.value[0] if threshold and threshold.value else 0.0) or BLEND_CUTOFF,
+        threshold.value[0] if threshold and threshold.value else 0.0,
         colour.image if colour else None,
         opacity.image if opacity else None,
         colour.primvar if colour else None,
@@ -110,6 +111,10 @@ class _Input:
     value: Linear | None = None
     image: ImageSource | None = None
     primvar: str | None = None
+
+    def is_black(self) -> bool:
+        """Tell whether it is one colour that reflects nothing."""
+        return self.image is None and self.primvar is None and self.value is not None and max(self.value) <= 0
 
 
 def _input(shader: UsdShade.Shader, names: tuple[str, ...], time: Usd.TimeCode, log: WarningLog) -> _Input | None:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.external_files import ExternalFiles
+from voxrt.voxelize.formats.opacity import OPAQUE_FROM
 from voxrt.voxelize.formats.scene_frame import scene_transform
 from voxrt.voxelize.formats.usd.cameras import read_cameras
 from voxrt.voxelize.formats.usd.diagnostics import caught
@@ -36,6 +37,7 @@ def read_stage(
     variants: Sequence[str] = (),
     time: float | None = None,
     allow_outside: bool = False,
+    opaque_from: float = OPAQUE_FROM,
 ) -> Scene:
     """Read a USD stage in this process; :func:`voxrt.voxelize.formats.usd.isolated.read_isolated` says how.
 
@@ -52,7 +54,7 @@ def read_stage(
             note_animation(stage, log)
         to_scene = scene_transform(up_axis(stage, log), metres_per_unit(stage, path))
         moment = time_code(stage, time)
-        traversal = StageTraversal(path, stage, external_files, log, allowance, moment)
+        traversal = StageTraversal(path, stage, external_files, log, allowance, moment, opaque_from)
         objects = traversal.objects(to_scene)
         cameras = read_cameras(stage, moment, to_scene, log)
         del layers  # kept open until here, so that the stage need not parse them again

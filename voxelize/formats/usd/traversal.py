@@ -69,6 +69,7 @@ class StageTraversal:
     log: WarningLog
     allowance: Allowance
     time: Usd.TimeCode
+    opaque_from: float
     materials: Materials = field(init=False)
     _transforms: UsdGeom.XformCache = field(init=False)
     _deformed: dict[str, Deformed] = field(init=False)
@@ -80,7 +81,7 @@ class StageTraversal:
 
     def __post_init__(self) -> None:
         images = Images(self.path, self.external_files, self.log, self.allowance)
-        self.materials = Materials(self.path, images, MaterialTable(), self.log, self.time)
+        self.materials = Materials(self.path, images, MaterialTable(), self.log, self.time, self.opaque_from)
         self._transforms = UsdGeom.XformCache(self.time)
         self._deformed = deformed_meshes(self.stage, self.time, self.log)
 
@@ -91,7 +92,7 @@ class StageTraversal:
         """
         placed = self._below(self.stage.GetPseudoRoot(), PREDICATE)
         transforms = [self._to_scene(one, to_scene) for one in placed]
-        meshes = assign_materials(self._meshes, self.materials.table, self.log)
+        meshes = assign_materials(self._meshes, self.materials.table, self.log, self.opaque_from)
         bodies = {one.body for one in placed if one.body and one.colliders}
         objects = []
         nearest: dict[str, int] = {}  # material by path: that of the first visible object below

@@ -161,15 +161,23 @@ def test_missing_coordinates_and_images_leave_the_factor_and_are_counted(tmp_pat
 
 
 @pytest.mark.parametrize(
-    ("image", "message"),
+    ("image", "what"),
     [
-        (b"not an image", r"images\[0\]: the image cannot be decoded"),
-        (encoded(QUARTERS)[:40], r"images\[0\]: the image cannot be decoded"),
-        (encoded(np.zeros((9000, 9000), np.uint8)), r"images\[0\]: the image has more than 67,108,864 pixels"),
+        (b"not an image", "is broken or of an unknown kind"),
+        (encoded(QUARTERS)[:40], "is broken or of an unknown kind"),
+        (b"DDS |...", "is a DDS file"),
+        (b"version https://git-lfs.github.com/spec/v1\n", "is a Git LFS pointer"),
     ],
 )
-def test_broken_and_oversized_images_are_refused(image, message, tmp_path):
-    with pytest.raises(AssetError, match=message):
+def test_an_image_that_cannot_be_read_leaves_the_factor(image, what, tmp_path):
+    scene = load(textured(image=image).save(tmp_path / "a.glb"))
+    assert scene.warnings[0].message.startswith(f"images[0]: the image {what} and was not read")
+    assert scene.objects[0].mesh.appearance is None
+
+
+def test_an_oversized_image_is_refused(tmp_path):
+    image = encoded(np.zeros((9000, 9000), np.uint8))
+    with pytest.raises(AssetError, match=r"images\[0\]: the image has more than 67,108,864 pixels"):
         load(textured(image=image).save(tmp_path / "a.glb"))
 
 
@@ -201,6 +209,28 @@ def test_alpha_cuts_away(mode, alpha, factor, there, tmp_path):
     scene = load(writer.save(tmp_path / "a.glb"))
     assert len(scene.objects) == 1 + there
     assert kinds(scene).get("transparent", 0) == (not there)
+
+
+@pytest.mark.parametrize(("mode", "left_out"), [("BLEND", [True, True, False, False]), ("MASK", [True] * 4)])
+def test_opaque_from_decides_for_what_blends(mode, left_out, tmp_path):
+    """The author's cutoff decides for a mask."""
+    writer = GltfWriter()
+    glass = {"alphaMode": mode, "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.3]}}
+    writer.add("materials", glass)
+    writer.show(mesh=writer.mesh(TRIANGLE, material=0))
+    writer.show(name="other", mesh=writer.mesh(TRIANGLE))
+    path = writer.save(tmp_path / "a.glb")
+    scenes = [load(path, opaque_from=opaque_from) for opaque_from in (None, 0.31, 0.3, 0)]
+    assert [kinds(scene).get("transparent", 0) == 1 for scene in scenes] == left_out
+
+
+def test_what_emits_alone_shows_its_emission(tmp_path):
+    black = {"pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1]}, "emissiveFactor": [0, 0, 1]}
+    assert seen(textured(material=black), tmp_path / "a.glb") == BLUE[:3]
+    lamp = black | {"emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 0}}
+    assert seen(textured(material=lamp), tmp_path / "b.glb") == RED[:3]
+    grey = black | {"pbrMetallicRoughness": {"baseColorFactor": [0, 1, 0, 1]}}
+    assert seen(textured(material=grey), tmp_path / "c.glb") == GREEN[:3]
 
 
 def test_a_uniform_transparent_material_is_air_and_alone_refused(tmp_path):

@@ -194,7 +194,7 @@ def test_what_is_not_honoured_is_counted(obj):
         ("", "has no faces"),
         ("\\\n", "has no faces"),
         ("v 1 2 3\ng An f Three\n", "has no faces"),
-        ("v 0 0 0\nv 1 0 0\nf 1 2\n", "has no visible faces"),
+        ("v 0 0 0\nv 1 0 0\nf 1 2\n", "has no faces of three corners"),
         ("v 0 0\nf 1 1 1\n", "line 1: a vertex needs three numbers"),
         ("v 0 0 0\n\n\nf 1 2 1\n", "line 4: vertex 2 of a face does not exist: the file has 1"),
         ("v 0 0 0\nf 0 1 1\n", "line 2: vertex 0 of a face does not exist"),
@@ -202,11 +202,12 @@ def test_what_is_not_honoured_is_counted(obj):
         ("v 0 \\\n0 0\nf 1 1 x\n", "line 3: 'x' is not a corner"),
         ("v 0 0 0\nf 1 1 /2\n", "line 2: '/2' is not a corner"),
         ("v 0 0 0\nf 1 1 99999999999999999999999\n", "line 2: "),
-        ("v 0 0\x01x\nf 1 1 1\n", "line 2: vertex 1 of a face has a coordinate that is not a number"),
+        ("v 0 0\x01x\nf 1 1 1\n", r"line 1: '0\x01x' is not a number"),
         ("v 0 0 0\nf 1\x011 x\n", "line 2: 'x' is not a corner"),
         ("v 0 0 nan\nf 1 1 1\n", "line 2: vertex 1 of a face has a coordinate that is not a number"),
         ("v 0 0 1e999\nf 1 1 1\n", "line 2: vertex 1 of a face has a coordinate that is not a number"),
-        ("v 0 0 1+e2\nf 1 1 1\n", "line 2: vertex 1 of a face has a coordinate that is not a number"),
+        ("v 0 0 1+e2\nf 1 1 1\n", "line 1: '1+e2' is not a number"),
+        ("v 0 0 0,5\nf 1 1 1\n", "line 1: '0,5' is not a number; numbers have a decimal point, not a comma: write 0.5"),
         (b"\xff\xfev\x00\x00\xd8", "is not the UTF-16-LE text that it begins as"),
     ],
 )
@@ -227,3 +228,42 @@ def test_too_many_materials(obj):
 def test_a_library_with_a_bad_number(obj, line):
     with pytest.raises(AssetError, match=r"model\.mtl: line 2: "):
         obj("mtllib model.mtl\nusemtl a\n" + CUBE, f"newmtl a\n{line}\n")
+
+
+NAMED = """\
+v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0
+mtllib my #2 library.mtl # from the archive
+usemtl Plastic #1\nf 1 2 3
+usemtl Plastic #2\nf 1 3 4
+usemtl plain # of one word\nf 1 2 4
+# usemtl red
+o # nothing
+"""
+
+
+def test_a_hash_within_a_name_is_part_of_it(tmp_path):
+    (tmp_path / "my #2 library.mtl").write_text(
+        "# materials\nnewmtl Plastic #1\nKd 1 0 0 # red\nnewmtl Plastic #2\nKd 0 0 1\nnewmtl plain # all\nKd 0 1 0\n"
+    )
+    (tmp_path / "a.obj").write_text(NAMED)
+    scene = load_obj(tmp_path / "a.obj")
+    assert [(one.name, one.colour) for one in scene.materials[1:]] == [
+        ("Plastic #1", (255, 0, 0)),
+        ("Plastic #2", (0, 0, 255)),
+        ("plain", (0, 255, 0)),
+    ]
+    assert kinds(scene) == {}
+
+
+@pytest.mark.parametrize(
+    ("statement", "opacity", "fix"),
+    [("d 0.25", "0.25", "'d 1'"), ("Tr 1", "0", "'Tr 0'"), ("d 0.1\nTr 0", "0.1", "'d 1'")],
+)
+def test_a_refusal_for_transparency_names_the_statement_and_the_option(statement, opacity, fix, obj):
+    text = "mtllib model.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl pane\nf 1 2 3\n"
+    library = f"newmtl pane\n{statement}\n"
+    with pytest.raises(AssetError) as refused:
+        obj(text, library)
+    said = f"material 'pane' has '{statement.splitlines()[0]}'; write {fix} in its place, or build with --opaque-from"
+    assert f"{said} {opacity}" in str(refused.value)
+    assert len(obj(text, library, opaque_from=float(opacity)).objects[0].mesh.triangles) == 1

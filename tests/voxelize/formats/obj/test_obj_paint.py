@@ -131,8 +131,8 @@ def test_a_broken_image(obj, tmp_path):
     data = (tmp_path / "map.png").read_bytes()
     for broken in (b"", b"GIF89a", data[:30], data[:45]):
         (tmp_path / "map.png").write_bytes(broken)
-        with pytest.raises(AssetError, match=r"map_Kd map\.png: the image cannot be decoded"):
-            load_obj(tmp_path / "model.obj")
+        scene = load_obj(tmp_path / "model.obj")
+        assert kinds(scene)["texture"] == len(scene.objects[0].mesh.triangles) // 2
 
 
 def test_an_image_that_promises_too_much(obj, tmp_path):
@@ -173,3 +173,15 @@ def test_opacity_without_colour_of_other_sizes(obj, tmp_path):
     (mesh,) = [one.mesh for one in scene.objects]
     assert mesh.appearance.entries[0].texture.pixels[:, :, 3].tolist() == [[0, 255, 255, 255]] * 2
     assert mesh.appearance.entries[0].texture.pixels[:, 3, :3].tolist() == [list(RED), list(BLUE)]
+
+
+def test_textures_stand_beside_the_library_or_beside_the_file(tmp_path):
+    """The library's folder comes first; names may have blanks, and a comment may follow them."""
+    (tmp_path / "maps").mkdir()
+    (tmp_path / "maps" / "paint.mtl").write_text("newmtl cloth\nmap_Kd my map #1.png # painted\n")
+    (tmp_path / "a.obj").write_text("mtllib maps/paint.mtl\n" + QUADS)
+    image = Image.fromarray(np.full((2, 2, 3), RED, np.uint8))
+    image.save(tmp_path / "my map #1.png")
+    assert load_obj(tmp_path / "a.obj").materials[1].colour == RED
+    Image.fromarray(np.full((2, 2, 3), BLUE, np.uint8)).save(tmp_path / "maps" / "my map #1.png")
+    assert load_obj(tmp_path / "a.obj").materials[1].colour == BLUE

@@ -45,10 +45,10 @@ def pyramid(encoding):
 
 @pytest.fixture
 def ply(tmp_path):
-    def write(data):
+    def write(data, **options):
         path = tmp_path / "part.ply"
         path.write_bytes(data)
-        return load_ply(path)
+        return load_ply(path, **options)
 
     return write
 
@@ -102,6 +102,10 @@ def test_faces_that_are_transparent_are_air(ply):
     rows = b"".join(b"%d %d 0 9 9 9 %d\n" % (x, y, alpha) for alpha in (255, 0) for x, y in ((0, 0), (1, 0), (0, 1)))
     scene = ply(text + rows + b"3 0 1 2 0\n3 3 4 5 0\n")
     assert len(scene.objects[0].mesh.triangles) == 1
+    for alpha, opaque_from, count in ((127, 0.5, 1), (127, 0.49, 2), (0, 0, 2)):
+        rows = b"".join(b"%d %d 0 9 9 9 %d\n" % (x, y, a) for a in (255, alpha) for x, y in ((0, 0), (1, 0), (0, 1)))
+        scene = ply(text + rows + b"3 0 1 2 0\n3 3 4 5 0\n", opaque_from=opaque_from)
+        assert len(scene.objects[0].mesh.triangles) == count
 
 
 @pytest.mark.parametrize(
@@ -118,7 +122,7 @@ def test_faces_that_are_transparent_are_air(ply):
         (header("ascii", 1, 1) + b"0 0 0 3 0 0 1 0", "vertex 1.0 does not exist: the file has 1"),
         (header("ascii", 1, 1) + b"0 0 0 3 0 0 nan 0", "vertex nan does not exist: the file has 1"),
         (header("ascii", 1, 1) + b"0 0 nan 3 0 0 0 0", "not numbers"),
-        (header("ascii", 1, 1) + b"0 0 zero 3 0 0 0 0", "could not convert"),
+        (header("ascii", 1, 1) + b"0 0 zero 3 0 0 0 0", "vertex: 'zero' is not a number"),
         (header("ascii", 1, 1) + b"0 0 0 -3 0 0 0 0", "ends before its 1 face rows do"),
         (header("ascii", 1, 1) + b"0 0 " + b"0" * 9999 + b" 3 0 0 0 0", "is not a number"),
         (header("ascii", 1, 1) + b"0 0 0 2 0 0 0", "no faces of three corners"),

@@ -20,11 +20,11 @@ CUBE = """
 
 @pytest.fixture
 def usd(tmp_path):
-    def write(body, meta='upAxis = "Y"\n metersPerUnit = 1', name="stage.usda"):
+    def write(body, meta='upAxis = "Y"\n metersPerUnit = 1', name="stage.usda", **options):
         path = tmp_path / name
         lines = body.replace(" }", "\n}")  # an attribute ends with its line
         path.write_text(f"#usda 1.0\n(\n {meta}\n)\n{lines}\n")
-        return load_usd(path)
+        return load_usd(path, **options)
 
     return write
 
@@ -199,6 +199,14 @@ def test_what_lets_light_through_is_air(usd):
     scene = usd(body)
     assert [one.name for one in scene.objects] == ["/solid"]
     assert kinds(scene)["transparent"] == 6
+    assert [one.name for one in usd(body, opaque_from=0.1).objects] == ["/cube", "/solid"]
+
+
+@pytest.mark.parametrize(("diffuse", "colour"), [("(0, 0, 0)", (255, 0, 0)), ("(0, 1, 0)", (0, 255, 0))])
+def test_what_emits_alone_shows_its_emission(diffuse, colour, usd):
+    body = material("lamp", diffuse, "color3f inputs:emissiveColor = (1, 0, 0)")
+    body += mesh("rel material:binding = </lamp>", apis='prepend apiSchemas = ["MaterialBindingAPI"]')
+    assert usd(body).materials[1].colour == colour
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,22 @@
+"""From which opacity a surface is solid, and the words for faces that are left out because they are less opaque."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from voxrt.voxelize.warning_log import WarningLog
+
+OPAQUE_FROM = 0.5
+"""The default: surfaces of lower opacity are left out. Voxels are solid or empty; half of the light decides."""
+
+
+def log_left_out(log: WarningLog, opacity: float, cutoff: float, opaque_from: float, faces: int) -> None:
+    """Count faces that are left out in a log: `opacity` is the highest that they have, `cutoff` what they needed."""
+    if opacity <= 0:
+        message = "fully transparent faces were left out"
+    elif cutoff == opaque_from:
+        message = f"faces less opaque than {opaque_from:g} were left out: a lower --opaque-from keeps them"
+    else:
+        message = "faces below the opacity threshold of their material were left out"
+    log.add("transparent", message, faces)
