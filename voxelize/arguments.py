@@ -24,6 +24,11 @@ _Integer = TypeVar("_Integer", bound=np.integer)
 _LONGEST = 60
 
 
+def metres_per_unit(name: str, value: object) -> float:
+    """Return a unit of length: 1e-12 to 1e12 metres, so that areas and volumes in the scene stay within float64."""
+    return real(name, value, low=1e-12, high=1e12)
+
+
 def whole(name: str, value: object, low: int, high: int) -> int:
     """Return an integer, or a real number without fraction, of `low` to `high` as an int; `name` is for errors.
 

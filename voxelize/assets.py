@@ -144,7 +144,7 @@ def _checked(
     if up is not None:
         chosen["up"] = arguments.choice("up", up, UP_AXES)
     if unit is not None:
-        chosen["unit"] = arguments.real("unit", unit, above=0)
+        chosen["unit"] = arguments.metres_per_unit("unit", unit)
     if time is not None:
         chosen["time"] = arguments.real("time", time)
     if animation is not None:

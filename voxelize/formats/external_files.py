@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
@@ -17,6 +18,23 @@ ALLOW_OUTSIDE = "put it into the asset's folder, or allow it: --allow-outside (i
 
 LFS_POINTER = b"version https://git-lfs.github.com/spec/"
 """How the small files begin that Git LFS puts in the place of large ones."""
+
+
+def asset_name(path: Path) -> str:
+    """Return what a scene is called that is read from a file."""
+    return as_text(path.stem)
+
+
+def as_text(name: str) -> str:
+    r"""Return a name as text that can name files: what is no text, or a backslash, becomes ``_``.
+
+    Examples
+    --------
+    >>> as_text("back\\slash")
+    'back_slash'
+    """
+    text = os.fsencode(name).decode("utf-8", "replace")
+    return text.translate({0xFFFD: "_", ord("\\"): "_"})
 
 
 def read_asset(path: Path) -> bytes:

@@ -40,9 +40,13 @@ class MaterialTable:
             raise DoesNotFitError(str(error)) from None
         return self._ids[key]
 
-    def default(self, log: WarningLog, faces: int = 1) -> int:
-        """Return the id of the default material, and count `faces` faces that have none in `log`."""
-        log.add("default-material", "faces without a material got the default one", faces)
+    def default(self, log: WarningLog | None, faces: int = 1) -> int:
+        """Return the id of the default material, and count `faces` faces that have none in `log`.
+
+        None for a file that has no materials at all.
+        """
+        if log is not None:
+            log.add("default-material", "faces without a material got the default one", faces)
         return self.id_of(_DEFAULT_KEY, "default", DEFAULT_COLOUR, authored=False)
 
     def __len__(self) -> int:

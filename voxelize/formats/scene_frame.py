@@ -19,8 +19,8 @@ _TURNS = {
 }
 
 
-FARTHEST = 1e70
-"""Products of four larger coordinates, as in the square of a normal, overflow float64."""
+FARTHEST = 1e60
+"""In the largest unit, products of four larger coordinates overflow float64: the square of a normal."""
 
 
 def in_range(positions: NDArray[np.floating]) -> NDArray[np.bool_]:
@@ -36,7 +36,7 @@ def scene_transform(up: str | None, unit: float | None) -> NDArray[np.float64]:
     1. The matrix is a rotation by quarter turns times a uniform scale.
     """
     axis = "y" if up is None else arguments.choice("up", up, tuple(_TURNS))
-    scale = 1.0 if unit is None else arguments.real("unit", unit, above=0)
+    scale = 1.0 if unit is None else arguments.metres_per_unit("unit", unit)
     matrix = np.eye(4)
     matrix[:3, :3] = np.array(_TURNS[axis], dtype=np.float64) * scale
     return matrix

@@ -12,7 +12,7 @@ from voxrt.plans.plan import fit_plan
 from voxrt.plans.run_plan import run_here
 from voxrt.plans.stage_clock import StageClock
 from voxrt.sources.object_selection import crowded_out, refuse_empty
-from voxrt.sources.source import as_text
+from voxrt.voxelize.formats.external_files import as_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

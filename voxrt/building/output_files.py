@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from voxrt.export import WORD_SUFFIXES
 from voxrt.octree import RomError
 from voxrt.outputs import OutputError, check_file, check_folder
-from voxrt.sources.source import as_text
+from voxrt.voxelize.formats.external_files import as_text
 
 if TYPE_CHECKING:
     import os

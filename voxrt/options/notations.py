@@ -49,7 +49,7 @@ def _length(text: str, *, is_unit: bool) -> float:
 LENGTH = Kind("LENGTH", lambda text: _length(text, is_unit=False), exact("real", above=0))
 """Metres; ``5cm`` and ``2 in`` on the command line."""
 
-UNIT = Kind("UNIT", lambda text: _length(text, is_unit=True), exact("real", above=0))
+UNIT = Kind("UNIT", lambda text: _length(text, is_unit=True), exact("metres_per_unit"))
 """Metres per unit; its name on the command line."""
 
 

@@ -7,12 +7,16 @@ from typing import TYPE_CHECKING
 
 from voxrt.voxelize import AssetError, DoesNotFitError, SceneWarning
 from voxrt.voxelize.dominant_objects import dominant_objects
+from voxrt.voxelize.stray_parts import find_stray_parts
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from voxrt.options.build_options import BuildOptions
     from voxrt.voxelize import Grid, ObjectReport, Scene, Viewpoint
+    from voxrt.voxelize.stray_parts import StrayParts
+
+_MOST_NAMES = 3
 
 
 def without_objects(label: str, scene: Scene, names: Sequence[str]) -> Scene:
@@ -63,7 +67,7 @@ def named_camera(label: str, scene: Scene, name: str) -> Viewpoint:
 
 
 def crowded_out(scene: Scene, grid: Grid, options: BuildOptions) -> tuple[SceneWarning, ...]:
-    """Return a warning where large objects leave hardly a voxel to the others; none where the user chose the size.
+    """Return a warning where stray parts or large objects leave few voxels to the rest; none where the user chose.
 
     Examples
     --------
@@ -74,6 +78,9 @@ def crowded_out(scene: Scene, grid: Grid, options: BuildOptions) -> tuple[SceneW
     """
     if options.bounds is not None or options.voxel_size is not None:
         return ()
+    stray = find_stray_parts(scene, options.geometry)
+    if stray is not None:
+        return (SceneWarning("stray-parts", _stray_message(stray), len(stray.names)),)
     names, width = dominant_objects(scene, grid.size, options.geometry)
     if not names:
         return ()
@@ -83,6 +90,18 @@ def crowded_out(scene: Scene, grid: Grid, options: BuildOptions) -> tuple[SceneW
         "leave it out with --ignore NAME, or give the grid --bounds"
     )
     return (SceneWarning("dominant-object", message, len(names)),)
+
+
+def _stray_message(stray: StrayParts) -> str:
+    wide = max(high - low for low, high in zip(stray.low, stray.high, strict=True))
+    bounds = ",".join(f"{value:.6g}" for value in (*stray.low, *stray.high))
+    fix = f"leave it out with --bounds={bounds}"
+    if stray.whole == stray.names:
+        fix += f", or with --ignore {stray.names[0]}"
+    return (
+        f"{stray.share:.2%} of the surface spans {wide:.4g} m of {stray.width:.4g} m, so that it gets few voxels: "
+        f"{', '.join(stray.names[:_MOST_NAMES])} reaches to {', '.join(f'{value:.6g}' for value in stray.place)}: {fix}"
+    )
 
 
 def refuse_empty(label: str, grid: Grid, objects: Sequence[ObjectReport]) -> None:

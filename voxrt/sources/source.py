@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, TypeAlias, Union
 from voxrt import voxelize
 from voxrt.sources.object_selection import named_camera, without_objects
 from voxrt.voxelize import AssetError, Scene, SceneWarning
+from voxrt.voxelize.formats.external_files import as_text, asset_name
 
 if TYPE_CHECKING:
     import trimesh
@@ -112,7 +113,7 @@ class Source:
 def open_source(asset: Asset, options: BuildOptions) -> Source:
     """Open an asset. Nothing is read before :meth:`Source.load`, which refuses what is no asset."""
     if isinstance(asset, str | os.PathLike):
-        return Source(options, as_text(Path(asset).stem), os.fspath(asset), file=Path(asset))
+        return Source(options, asset_name(Path(asset)), os.fspath(asset), file=Path(asset))
     name = "mesh"
     if isinstance(asset, Scene):
         name = as_text(asset.name)
@@ -122,15 +123,3 @@ def open_source(asset: Asset, options: BuildOptions) -> Source:
         if is_trimesh(asset):
             name = as_text(Path(str(asset.metadata.get("name") or asset.metadata.get("file_name") or name)).stem)
     return Source(options, name, name, value=asset)
-
-
-def as_text(name: str) -> str:
-    r"""Return a name as text that can name files: what is no text, or a backslash, becomes ``_``.
-
-    Examples
-    --------
-    >>> as_text("back\\slash")
-    'back_slash'
-    """
-    text = os.fsencode(name).decode("utf-8", "replace")
-    return text.translate({0xFFFD: "_", ord("\\"): "_"})

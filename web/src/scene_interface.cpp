@@ -277,7 +277,7 @@ EXPORT(vx_scene_end) double vx_scene_end() {
             left_out += leave_out_transparent(mesh);
             if (mesh.materials.empty())
                 continue;
-            mesh.used = voxelize::used_vertices(mesh.triangles, mesh.positions.size() / 3);
+            mesh.used = voxelize::spanning_vertices<double>(mesh.triangles, mesh.positions);
             voxelize::move_unused_vertices(mesh.positions, mesh.triangles);
         }
         std::erase_if(scene.objects, [](const Object& object) { return scene.meshes[object.mesh].materials.empty(); });

@@ -16,7 +16,7 @@ from voxrt.voxelize.authoring.scene_toml.validation import CheckedFile, check_fi
 from voxrt.voxelize.authoring.solid import Solid
 from voxrt.voxelize.authoring.transforms import placement
 from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.formats.external_files import ALLOW_OUTSIDE, ExternalFiles
+from voxrt.voxelize.formats.external_files import ALLOW_OUTSIDE, ExternalFiles, asset_name
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -68,7 +68,7 @@ class _Builder:
     def scene(self) -> Scene:
         checked, values = self._checked, self._checked.values
         try:
-            self._author = Author(checked.path.stem, background=values.background)
+            self._author = Author(asset_name(checked.path), background=values.background)
         except ValueError as error:
             raise checked.error(("background",), str(error), "correct the colour") from None
         for name, material in values.materials.items():

@@ -43,7 +43,11 @@ def _split_glb(path: Path, data: bytes) -> tuple[memoryview, memoryview | None]:
         raise AssetError(path, f"a GLB of {len(data)} bytes ends before its JSON chunk", fix=_RE_EXPORT)
     version, length = struct.unpack_from("<II", data, 4)
     if version != 2:
-        raise AssetError(path, f"GLB version {version} is unknown", fix="export as glTF 2.0")
+        raise AssetError(
+            path,
+            f"is a GLB of version {version}, and version 2 is read",
+            fix="convert it to glTF 2.0, by gltf-pipeline for example",
+        )
     if length != len(data):
         raise AssetError(path, f"the GLB says it has {length} bytes and has {len(data)}", fix=_RE_EXPORT)
     chunks: dict[int, memoryview] = {}
@@ -68,6 +72,25 @@ def _split_glb(path: Path, data: bytes) -> tuple[memoryview, memoryview | None]:
     return chunks[_JSON_CHUNK], chunks.get(_BINARY_CHUNK)
 
 
+class _Asset1(msgspec.Struct, frozen=True):
+    version: str | float = "1.0"  # which files of version 1 may leave out
+
+
+class _Gltf1(msgspec.Struct, frozen=True):
+    asset: _Asset1 = _Asset1()
+
+
+def _refuse_version_1(path: Path, text: bytes) -> None:
+    """Raise AssetError for a file of glTF 1.0, whose lists are objects."""
+    try:
+        version = msgspec.json.decode(text.removeprefix(b"\xef\xbb\xbf"), type=_Gltf1).asset.version
+    except msgspec.DecodeError:
+        return
+    if str(version).startswith("1"):
+        fix = "convert it to 2.0, by gltf-pipeline for example"
+        raise AssetError(path, f"is glTF {version}, and glTF 2.0 is read", place="asset", fix=fix)
+
+
 def _parse(path: Path, text: bytes) -> Gltf:
     try:
         str(text, "utf-8")  # the decoder looks only at the strings it needs
@@ -76,6 +99,7 @@ def _parse(path: Path, text: bytes) -> Gltf:
     try:
         gltf = _decoder.decode(text.removeprefix(b"\xef\xbb\xbf"))
     except msgspec.ValidationError as error:
+        _refuse_version_1(path, text)
         problem, place = explain(error)
         fix = "the file breaks the glTF 2.0 schema: export it again"
         raise AssetError(path, problem, place=place, fix=fix) from None

@@ -147,8 +147,10 @@ class Document:
         scheme = uri.partition(":")[0]
         if ":" in uri and "/" not in scheme:
             raise self.error(place, f"the address {uri[:60]!r} was not opened", "put the file into the asset's folder")
-        # Some exporters do not encode names, or write backslashes.
-        target = self._external_files.find(unquote(uri), uri, unquote(uri).replace("\\", "/"))
+        # Some exporters do not encode names, or write backslashes; web viewers append queries.
+        plain = unquote(uri)
+        without_query = unquote(uri.partition("?")[0].partition("#")[0])
+        target = self._external_files.find(plain, uri, plain.replace("\\", "/"), without_query)
         if target is None:
             return None
         if not self._external_files.allows(target):

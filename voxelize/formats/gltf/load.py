@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.voxelize.collider_shapes import bounding_points, collider_around
+from voxrt.voxelize.formats.external_files import asset_name
 from voxrt.voxelize.formats.gltf.accessors import refuse_broken_parts
 from voxrt.voxelize.formats.gltf.animation import posed
 from voxrt.voxelize.formats.gltf.appearance import find_variant, read_appearance
@@ -101,7 +102,9 @@ def load_gltf(
         raise document.error("", problem, "check that the scene shows a mesh")
     cameras = read_cameras(document, hierarchy)
     viewpoint = cameras[0] if cameras else None
-    return Scene(path.stem, objects, table.materials(), document.log.warnings(), viewpoint=viewpoint, cameras=cameras)
+    return Scene(
+        asset_name(path), objects, table.materials(), document.log.warnings(), viewpoint=viewpoint, cameras=cameras
+    )
 
 
 def _check_required_extensions(document: Document) -> None:

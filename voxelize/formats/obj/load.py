@@ -9,7 +9,7 @@ import numpy as np
 
 from voxrt.voxelize.corner_normals import CornerNormals
 from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.formats.external_files import ExternalFiles
+from voxrt.voxelize.formats.external_files import ExternalFiles, asset_name
 from voxrt.voxelize.formats.material_table import MaterialTable
 from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
 from voxrt.voxelize.formats.obj.appearance import appearance_of_faces, surface_appearance
@@ -99,7 +99,7 @@ def load_obj(
         raise _nothing_visible(path, appearance.left_out.values(), opaque_from)
     triangles = statements.corners[corners].astype(np.int32)
     normals = read_normals(text, statements, log)
-    parts = list(split_objects(path.stem, statements, triangles, faces))
+    parts = list(split_objects(asset_name(path), statements, triangles, faces))
     loaded = [
         LoadedMesh(
             *compact(statements.positions, triangles[chosen]),
@@ -119,7 +119,7 @@ def load_obj(
         raise AssetError(
             path, "has no visible faces", fix="make its textures opaque, or build with a lower --opaque-from"
         )
-    return Scene(path.stem, objects, table.materials(), log.warnings())
+    return Scene(asset_name(path), objects, table.materials(), log.warnings())
 
 
 def _nothing_visible(path: Path, left_out: Iterable[MtlMaterial], opaque_from: float) -> AssetError:

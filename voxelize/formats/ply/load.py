@@ -10,7 +10,7 @@ import numpy as np
 from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8
 from voxrt.voxelize.corner_normals import CornerNormals
 from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.formats.external_files import ExternalFiles, read_asset
+from voxrt.voxelize.formats.external_files import ExternalFiles, asset_name, read_asset
 from voxrt.voxelize.formats.material_table import MaterialTable
 from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
 from voxrt.voxelize.formats.opacity import OPAQUE_FROM
@@ -80,15 +80,16 @@ def load_ply(
     materials = np.zeros(len(triangles), dtype=np.uint8)
     bare = np.ones(len(triangles), dtype=np.bool_) if appearance is None else appearance.rows < 0
     if bare.any():
-        materials[bare] = table.default(log, int(np.count_nonzero(np.bincount(faces[bare]))))
+        count = int(np.count_nonzero(np.bincount(faces[bare])))
+        materials[bare] = table.default(None if appearance is None else log, count)
     loaded = LoadedMesh(positions, triangles, materials, appearance, _normals(tables["vertex"], triangles))
     (mesh,) = assign_materials([loaded], table, log, opaque_from)
     if not len(mesh.triangles):
         raise AssetError(
             path, "has no visible faces", fix="make its colours opaque, or build with a lower --opaque-from"
         )
-    one = SceneObject(path.stem, mesh, scene_transform(up, unit))
-    return Scene(path.stem, (one,), table.materials(), log.warnings())
+    one = SceneObject(asset_name(path), mesh, scene_transform(up, unit))
+    return Scene(asset_name(path), (one,), table.materials(), log.warnings())
 
 
 def _normals(vertices: Table, triangles: NDArray[np.int32]) -> CornerNormals | None:

@@ -12,7 +12,7 @@ import numpy as np
 from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
 from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8
 from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.formats.external_files import read_asset
+from voxrt.voxelize.formats.external_files import asset_name, read_asset
 from voxrt.voxelize.formats.material_table import MaterialTable
 from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
 from voxrt.voxelize.formats.scene_frame import FARTHEST, in_range, scene_transform
@@ -52,7 +52,7 @@ def load_stl(path: str | Path, *, up: str | None = None, unit: float | None = No
     facet_colours = None
     if _is_binary(data):
         corners, facet_colours = _binary(path, data, log)
-        solids = [(path.stem, corners)]
+        solids = [(asset_name(path), corners)]
     else:
         solids = ascii_solids(path, data.removeprefix(codecs.BOM_UTF8))
     table = MaterialTable()
@@ -74,12 +74,12 @@ def load_stl(path: str | Path, *, up: str | None = None, unit: float | None = No
         bare = np.ones(len(triangles), dtype=np.bool_) if appearance is None else appearance.rows < 0
         materials = np.zeros(len(triangles), dtype=np.uint8)
         if bare.any():
-            materials[bare] = table.default(log, int(bare.sum()))
+            materials[bare] = table.default(None if appearance is None else log, int(bare.sum()))
         (mesh,) = assign_materials([LoadedMesh(positions, triangles, materials, appearance)], table, log)
         objects.append(SceneObject(name, mesh, transform))
     if not objects:
         raise AssetError(path, "has no triangles", fix="export it with its surface")
-    return Scene(path.stem, tuple(objects), table.materials(), log.warnings())
+    return Scene(asset_name(path), tuple(objects), table.materials(), log.warnings())
 
 
 def _is_binary(data: bytes) -> bool:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.formats.external_files import asset_name
 from voxrt.voxelize.formats.obj.text import Text, as_text, real_rows
 from voxrt.voxelize.formats.written_numbers import read_reals
 
@@ -35,7 +36,7 @@ def ascii_solids(path: Path, data: bytes) -> list[tuple[str, NDArray[np.float64]
     used: set[str] = set()
     named = []
     for label, corners in solids:
-        stem = label.decode("utf-8", errors="replace").strip() or path.stem
+        stem = label.decode("utf-8", errors="replace").strip() or asset_name(path)
         name, number = stem, 2
         while name in used:
             name, number = f"{stem} ({number})", number + 1

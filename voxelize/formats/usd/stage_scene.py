@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.formats.external_files import ExternalFiles
+from voxrt.voxelize.formats.external_files import ExternalFiles, asset_name
 from voxrt.voxelize.formats.opacity import OPAQUE_FROM
 from voxrt.voxelize.formats.scene_frame import scene_transform
 from voxrt.voxelize.formats.usd.cameras import read_cameras
@@ -63,5 +63,10 @@ def read_stage(
         raise AssetError(path, "shows nothing" + (f" ({reasons})" if reasons else ""), fix="check it with usdview")
     viewpoint = cameras[0] if cameras else None
     return Scene(
-        path.stem, objects, traversal.materials.table.materials(), log.warnings(), viewpoint=viewpoint, cameras=cameras
+        asset_name(path),
+        objects,
+        traversal.materials.table.materials(),
+        log.warnings(),
+        viewpoint=viewpoint,
+        cameras=cameras,
     )

@@ -29,11 +29,12 @@ using Triple = std::array<double, 3>;
 
 template <typename T> std::span<const T> span_of(const InputOf<T>& array) { return {array.data(), array.size()}; }
 
-std::vector<uint8_t> used_of(const InputOf<int32_t>& triangles, size_t vertices) {
+void check(const InputOf<int32_t>& triangles, size_t vertices) {
     for (size_t i = 0; i < triangles.size(); ++i)
         if (triangles.data()[i] < 0 || static_cast<size_t>(triangles.data()[i]) >= vertices)
             throw nb::value_error("triangles must index positions");
-    return triangles.size() == 0 ? std::vector<uint8_t>() : used_vertices(span_of(triangles), vertices);
+    if (triangles.size() % 3 != 0)
+        throw nb::value_error("triangles must have shape (T, 3)");
 }
 
 std::tuple<Triple, Triple> scene_bounds(const std::vector<Cloud>& clouds, size_t hidden) {
@@ -46,7 +47,10 @@ std::tuple<Triple, Triple> scene_bounds(const std::vector<Cloud>& clouds, size_t
             const std::span<const double> placed = span_of(transforms);
             std::visit(
                 [&](const auto& positions) {
-                    const std::vector<uint8_t> used = used_of(triangles, positions.size() / 3);
+                    check(triangles, positions.size() / 3);
+                    std::vector<uint8_t> used;
+                    if (triangles.size() > 0)
+                        used = spanning_vertices(span_of(triangles), span_of(positions));
                     for (size_t i = 0; i < placed.size(); i += 12)
                         bounds.add(span_of(positions), used, placed.subspan(i).first<12>());
                 },
@@ -63,7 +67,10 @@ std::tuple<Triple, double> fit(const Triple& low, const Triple& high, unsigned d
 }
 
 nb::object placed_vertices(const InputOf<double>& positions, const InputOf<int32_t>& triangles) {
-    const std::vector<uint8_t> used = used_of(triangles, positions.size() / 3);
+    check(triangles, positions.size() / 3);
+    if (triangles.size() == 0)
+        return nb::cast(positions);
+    const std::vector<uint8_t> used = used_vertices(span_of(triangles), positions.size() / 3);
     if (std::all_of(used.begin(), used.end(), [](uint8_t one) { return one != 0; }))
         return nb::cast(positions);
     auto moved = std::make_unique<double[]>(positions.size());

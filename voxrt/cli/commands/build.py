@@ -111,7 +111,7 @@ def _check_company(assets: tuple[Path, ...], output: Path, preview: str | PathLi
         raise UsageError(f"--preview {preview} is one picture for {len(assets)} assets; leave the file out")
     if output.suffix.lower() in voxrt.export.WORD_SUFFIXES and not output.is_dir():
         raise UsageError(f"-o {output} is one file for {len(assets)} assets; name a folder")
-    from voxrt.sources.source import as_text  # noqa: PLC0415 - NumPy comes with it, and --help must be instant
+    from voxrt.voxelize.formats.external_files import as_text  # noqa: PLC0415 - NumPy comes with it, and --help must be instant
 
     names: dict[str, Path] = {}
     for asset in assets:

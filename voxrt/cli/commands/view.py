@@ -14,11 +14,11 @@ from voxrt.cli.terminal.errors import UsageError
 from voxrt.cli.terminal.messages import summarize
 from voxrt.options.shared import PREVIEW_SIZE
 from voxrt.outputs import check_folder, writing
-from voxrt.sources.source import as_text
 from voxrt.view.animation import ANIMATION_SUFFIXES, write_animation
 from voxrt.view.plotter import check_screen
 from voxrt.view.scene_overlay import find_owners, preview_of, scene_triangles
 from voxrt.views.writers import PANE_WRITERS
+from voxrt.voxelize.formats.external_files import as_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable

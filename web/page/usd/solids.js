@@ -52,7 +52,7 @@ export function dimensionsOf(kind, path, read) {
     const value = read(name) ?? plain;
     if (name === "axis" && !(String(value) in AXES))
       throw new Error(`${path}: axis '${value}' is not X, Y or Z; use one of them`);
-    if (name !== "axis" && !(typeof value === "number" && value >= 0 && value < 1e70))
+    if (name !== "axis" && !(typeof value === "number" && value >= 0 && value < 1e60))
       throw new Error(`${path}: ${name} ${value} is not a length; use a positive number`);
     return [name, value];
   });

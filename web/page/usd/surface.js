@@ -5,7 +5,7 @@ import { dimensionsOf, solidOf } from "./solids.js";
 import { attributeOf, numbersOf } from "./stage.js";
 import { ShapeUtils, Vector2 } from "../three/three.core.js";
 
-const FARTHEST = 1e70;
+const FARTHEST = 1e60;
 const [FEW_CORNERS, MOST_CORNERS] = [64, 20_000]; // of a concave polygon
 
 /** @import { Numbers, Primvar } from "./stage.js" @import { Composer } from "./three_private.js" */

@@ -264,6 +264,6 @@ def test_a_refusal_for_transparency_names_the_statement_and_the_option(statement
     library = f"newmtl pane\n{statement}\n"
     with pytest.raises(AssetError) as refused:
         obj(text, library)
-    said = f"material 'pane' has '{statement.splitlines()[0]}'; write {fix} in its place, or build with --opaque-from"
-    assert f"{said} {opacity}" in str(refused.value)
+    expected = f"material 'pane' has '{statement.splitlines()[0]}'; write {fix} in its place, or build with --opaque-from"
+    assert f"{expected} {opacity}" in str(refused.value)
     assert len(obj(text, library, opaque_from=float(opacity)).objects[0].mesh.triangles) == 1

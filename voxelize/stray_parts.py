@@ -1,0 +1,188 @@
+"""Parts far away from nearly all of the surface: they decide the size of a voxel, and leave few to the rest."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from voxrt.voxelize.object_proxies import proxies
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from voxrt.voxelize.mesh import Mesh
+    from voxrt.voxelize.object_proxies import Geometry
+    from voxrt.voxelize.scene import Scene, SceneObject
+
+_NEARLY_ALL = 0.99
+_NARROW = 1 / 8
+"""A wider bulk keeps enough voxels."""
+
+_ENOUGH = 100_000
+"""Triangles that tell whether a scene is wide, as nearly all are."""
+
+_CHUNK = 1 << 18
+
+
+@dataclass(frozen=True, slots=True)
+class StrayParts:
+    """Where nearly all of the surface is, and what lies elsewhere.
+
+    `low` and `high` are the corners of a box that holds a share of the surface, `width` is the longest side of all, in
+    metres. `names` are the objects that reach beyond the box, of which `whole` have nothing within it. `place` is the
+    farthest corner of their triangles.
+    """
+
+    low: tuple[float, float, float]
+    high: tuple[float, float, float]
+    share: float
+    width: float
+    names: tuple[str, ...]
+    whole: tuple[str, ...]
+    place: tuple[float, float, float]
+
+
+def find_stray_parts(scene: Scene, geometry: Geometry) -> StrayParts | None:
+    """Find what lies outside a box that is an eighth as wide as the scene and holds 99 % of its surface.
+
+    None where no such box is found: it is sought between quantiles of the triangles' middles. Objects that colliders
+    stand for are not looked at; nor is a scene that has some.
+
+    >>> from voxrt.voxelize import EMPTY, Material, Mesh, Scene, SceneObject
+    >>> corners = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [900, 0, 0], [900, 1, 0], [900, 0, 0.1]])
+    >>> scan = SceneObject("scan", Mesh(corners, [[0, 1, 2], [3, 4, 5]], [1, 1]))
+    >>> found = find_stray_parts(Scene("hill", [scan], [EMPTY, Material("earth", (90, 80, 70))]), "auto")
+    >>> found.names, found.high, found.place
+    (('scan',), (4.0, 4.0, 0.0), (900.0, 1.0, 0.1))
+    """
+    shown = [item for item in scene.objects if not item.hidden]
+    if any(proxies(item, geometry) is not None for item in shown):
+        return None
+    groups = _groups(shown)
+    count = sum(one.count for one in groups)
+    if count < 2:
+        return None
+    step = max(1, count // _ENOUGH)
+    ends = _bulk_ends(np.concatenate([one.corners(one.some(step)) for one in groups]))
+    if ends is None or (ends[1] - ends[0]).max() >= _width(groups) * _NARROW:
+        return None
+    return _strays(shown, groups, *ends)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Group:
+    """The objects that share a mesh. Its triangles are numbered object by object."""
+
+    mesh: Mesh
+    transforms: NDArray[np.float64]  # shape (N, 4, 4)
+    owners: NDArray[np.int64]  # shape (N,): which objects they are
+
+    @property
+    def count(self) -> int:
+        return len(self.owners) * len(self.mesh.triangles)
+
+    def some(self, step: int) -> NDArray[np.int64]:
+        """Return every `step`-th triangle. The first depends on the group: small ones must not all be left out."""
+        return np.arange(int(self.owners[0]) % step, self.count, step)
+
+    def corners(self, numbers: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Return the corners of triangles in the scene frame: float64, shape (T, 3, 3)."""
+        which, rows = np.divmod(numbers, len(self.mesh.triangles))
+        own = self.mesh.positions[self.mesh.triangles[rows]].astype(np.float64)
+        if len(self.owners) == 1:
+            return np.asarray(own @ self.transforms[0, :3, :3].T + self.transforms[0, :3, 3])
+        turned = own @ self.transforms[which, :3, :3].transpose(0, 2, 1)
+        return np.asarray(turned + self.transforms[which, None, :3, 3])
+
+
+def _groups(shown: list[SceneObject]) -> list[_Group]:
+    owners: dict[int, list[int]] = {}
+    for index, item in enumerate(shown):
+        if len(item.mesh.triangles):
+            owners.setdefault(id(item.mesh), []).append(index)
+    return [
+        _Group(shown[own[0]].mesh, np.stack([shown[i].transform for i in own]), np.array(own, np.int64))
+        for own in owners.values()
+    ]
+
+
+def _width(groups: list[_Group]) -> float:
+    """Return the longest side of a box that holds all vertices."""
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    for one in groups:
+        ends = np.stack([one.mesh.positions.min(axis=0), one.mesh.positions.max(axis=0)]).astype(np.float64)
+        corners = np.array([[ends[i & 1, 0], ends[i >> 1 & 1, 1], ends[i >> 2, 2]] for i in range(8)])
+        placed = corners @ one.transforms[:, :3, :3].transpose(0, 2, 1) + one.transforms[:, None, :3, 3]
+        low, high = np.minimum(low, placed.min(axis=(0, 1))), np.maximum(high, placed.max(axis=(0, 1)))
+    return float((high - low).max())
+
+
+def _areas(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    with np.errstate(over="ignore", invalid="ignore"):
+        crossed = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        return np.asarray(np.linalg.norm(crossed, axis=1) / 2)
+
+
+def _bulk_ends(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+    """Return the ends of where the middles of nearly all of the surface are, with some room; None for no surface."""
+    area = _areas(corners)
+    if not 0 < area.sum() < np.inf:
+        return None
+    middles = corners.mean(axis=1)
+    order = np.argsort(middles, axis=0, kind="stable")
+    sums = np.cumsum(area[order], axis=0) / area.sum()
+    tail = (1 - _NEARLY_ALL) / 6
+    first, last = (sums <= tail).sum(axis=0), np.minimum((sums < 1 - tail).sum(axis=0), len(order) - 1)
+    axes = np.arange(3)
+    low, high = middles[order[first, axes], axes], middles[order[last, axes], axes]
+    room = (high - low).max() / 2  # quantiles leave ends out
+    return low - room, high + room
+
+
+def _strays(
+    shown: list[SceneObject], groups: list[_Group], start: NDArray[np.float64], end: NDArray[np.float64]
+) -> StrayParts | None:
+    """Look at all triangles: those whose middles lie between `start` and `end`, and the others."""
+    bulk, whole = _Box(), _Box()
+    inside, outside = (np.zeros(len(shown), np.bool_) for _ in range(2))
+    farthest, place = 0.0, start
+    for one in groups:
+        for begin in range(0, one.count, _CHUNK):
+            numbers = np.arange(begin, min(begin + _CHUNK, one.count))
+            corners = one.corners(numbers)
+            middles = corners.mean(axis=1)
+            within = ((middles >= start) & (middles <= end)).all(axis=1)
+            owners = one.owners[numbers // len(one.mesh.triangles)]
+            inside[owners[within]] = outside[owners[~within]] = True
+            whole.add(corners)
+            bulk.add(corners[within])
+            points = corners[~within].reshape(-1, 3)
+            if len(points):
+                away = np.maximum(start - points, points - end).max(axis=1)
+                if away.max() > farthest:
+                    farthest, place = float(away.max()), points[np.argmax(away)]
+    width = float((whole.high - whole.low).max())
+    share = bulk.area / whole.area if 0 < whole.area < np.inf else 0.0
+    if share < _NEARLY_ALL or not outside.any() or (bulk.high - bulk.low).max() >= width * _NARROW:
+        return None
+    names, alone = (tuple(shown[i].name for i in np.flatnonzero(which)) for which in (outside, outside & ~inside))
+    return StrayParts(_triple(bulk.low), _triple(bulk.high), share, width, names, alone, _triple(place))
+
+
+class _Box:
+    """The bounds and the area of triangles."""
+
+    def __init__(self) -> None:
+        self.low, self.high, self.area = np.full(3, np.inf), np.full(3, -np.inf), 0.0
+
+    def add(self, corners: NDArray[np.float64]) -> None:
+        if len(corners):
+            self.low = np.minimum(self.low, corners.min(axis=(0, 1)))
+            self.high = np.maximum(self.high, corners.max(axis=(0, 1)))
+            self.area += float(_areas(corners).sum())
+
+
+def _triple(vector: NDArray[np.float64]) -> tuple[float, float, float]:
+    return float(vector[0]), float(vector[1]), float(vector[2])
