@@ -73,7 +73,7 @@ def load(
         A ``.gltf``, ``.glb``, ``.obj``, ``.stl``, ``.ply``, ``.usd``, ``.usda``, ``.usdc`` or ``.usdz`` file, or a
         ``.toml`` scene file. The case of the suffix does not matter.
     up
-        The file's up axis, for formats that do not define it (OBJ, STL, PLY); None for y.
+        The file's up axis, for formats that do not define it; None for z with STL, for y with OBJ and PLY.
     unit
         Metres per unit of the file, for the same formats; None for 1.
     time

@@ -11,6 +11,8 @@ from voxrt.voxelize import arguments
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from voxrt.voxelize.warning_log import WarningLog
+
 # Rotations that turn the named axis upwards; right-handed, so that nothing is mirrored.
 _TURNS = {
     "x": ((0, -1, 0), (1, 0, 0), (0, 0, 1)),
@@ -40,3 +42,38 @@ def scene_transform(up: str | None, unit: float | None) -> NDArray[np.float64]:
     matrix = np.eye(4)
     matrix[:3, :3] = np.array(_TURNS[axis], dtype=np.float64) * scale
     return matrix
+
+
+_FLAT_SHARE, _MUCH_MORE, _THIN = 0.02, 4.0, 1e-4
+_ENOUGH = 200_000  # triangles that tell
+
+
+def hint_up_axis(
+    up: str | None, positions: NDArray[np.floating], triangles: NDArray[np.int32], log: WarningLog
+) -> None:
+    """Say so where nobody states the up axis, and a mesh stands on a flat base if z is up, but not if y is.
+
+    `positions` have shape (V, 3), `triangles` (T, 3). A base is flat where 2 % of the surface lie at the
+    lower end of the axis, and four times as much as at its upper end and at the lower end of the other axis.
+    """
+    if up is not None:
+        return
+    corners = positions[triangles[:: max(1, len(triangles) // _ENOUGH)]].astype(np.float64)
+    low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
+    size = float((high - low).max())
+    if not 0 < size < FARTHEST:
+        return
+    corners = (corners - low) / size
+    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    total = area.sum()
+
+    def share(axis: int, end: float) -> float:
+        flat = np.abs(corners[:, :, axis] - end).max(axis=1) < _THIN
+        return float(area[flat].sum() / total)
+
+    if total > 0:
+        base = share(2, 0.0)
+        others = share(2, float((high - low)[2] / size)), share(1, 0.0)
+        if base >= _FLAT_SHARE and base > _MUCH_MORE * max(others):
+            message = "the file does not state its up axis, and stands on a flat base if z is up: try --up z"
+            log.add("up-axis", message)

@@ -90,7 +90,7 @@ class BuildOptions:
         "box: round the sides of box colliders up to powers of two voxels, which saves memory. none: keep them as "
         "they are.", is_rare=True, manifest="always")
     up: UpAxis | None = option(one_of(get_args(UpAxis)), None, CONTENT,
-        "The up axis of an asset whose format does not state it (OBJ, STL, PLY). The default is y.",
+        "The up axis of an asset whose format does not state it. The default is z for STL, y for OBJ and PLY.",
         is_rare=True, manifest="always")
     unit: float | None = option(notations.UNIT, None, CONTENT,
         "Metres per unit of an asset whose format does not state it (OBJ, STL, PLY). The default is 1.",

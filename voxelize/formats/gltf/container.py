@@ -73,7 +73,7 @@ def _split_glb(path: Path, data: bytes) -> tuple[memoryview, memoryview | None]:
 
 
 class _Asset1(msgspec.Struct, frozen=True):
-    version: str | float = "1.0"  # which files of version 1 may leave out
+    version: str | float = ""
 
 
 class _Gltf1(msgspec.Struct, frozen=True):

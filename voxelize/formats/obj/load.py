@@ -17,7 +17,7 @@ from voxrt.voxelize.formats.obj.objects import compact, split_objects
 from voxrt.voxelize.formats.obj.statements import Statements, read_normals, read_statements, texture_coordinates
 from voxrt.voxelize.formats.obj.text import Text, read_text
 from voxrt.voxelize.formats.opacity import OPAQUE_FROM
-from voxrt.voxelize.formats.scene_frame import FARTHEST, in_range, scene_transform
+from voxrt.voxelize.formats.scene_frame import FARTHEST, hint_up_axis, in_range, scene_transform
 from voxrt.voxelize.formats.triangulation import triangulate_corners
 from voxrt.voxelize.formats.written_numbers import is_number, not_a_number
 from voxrt.voxelize.scene import Scene, SceneObject
@@ -110,6 +110,7 @@ def load_obj(
         for _, chosen in parts
     ]
     transform = scene_transform(up, unit)
+    hint_up_axis(up, statements.positions, triangles, log)
     objects = tuple(
         SceneObject(name, mesh, transform)
         for (name, _), mesh in zip(parts, assign_materials(loaded, table, log, opaque_from), strict=True)

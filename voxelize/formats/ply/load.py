@@ -16,7 +16,7 @@ from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
 from voxrt.voxelize.formats.opacity import OPAQUE_FROM
 from voxrt.voxelize.formats.ply.format import Column, ListColumn, Table, read_ply
 from voxrt.voxelize.formats.ply.painting import image_of_faces, read_textures, surface_appearance, texture_coordinates
-from voxrt.voxelize.formats.scene_frame import FARTHEST, in_range, scene_transform
+from voxrt.voxelize.formats.scene_frame import FARTHEST, hint_up_axis, in_range, scene_transform
 from voxrt.voxelize.formats.triangulation import triangulate_corners
 from voxrt.voxelize.scene import Scene, SceneObject
 from voxrt.voxelize.warning_log import WarningLog
@@ -88,6 +88,7 @@ def load_ply(
         raise AssetError(
             path, "has no visible faces", fix="make its colours opaque, or build with a lower --opaque-from"
         )
+    hint_up_axis(up, mesh.positions, mesh.triangles, log)
     one = SceneObject(asset_name(path), mesh, scene_transform(up, unit))
     return Scene(asset_name(path), (one,), table.materials(), log.warnings())
 

@@ -37,7 +37,7 @@ def load_stl(path: str | Path, *, up: str | None = None, unit: float | None = No
     path
         The file: binary, or ASCII with any number of solids, each of which becomes an object.
     up
-        The file's up axis; None for y.
+        The file's up axis; None for z, as printers and CAD programs mean it.
     unit
         Metres per unit of the file; None for 1.
 
@@ -56,7 +56,7 @@ def load_stl(path: str | Path, *, up: str | None = None, unit: float | None = No
     else:
         solids = ascii_solids(path, data.removeprefix(codecs.BOM_UTF8))
     table = MaterialTable()
-    transform = scene_transform(up, unit)
+    transform = scene_transform(up or "z", unit)
     objects = []
     for name, corners in solids:
         if not len(corners):

@@ -100,7 +100,7 @@ JSON = b'{"asset":{"version":"2.0"}}     '
     [
         (glb([(b"JSON", JSON)])[:16], r"a GLB of 16 bytes ends before its JSON chunk"),
         (glb([(b"JSON", JSON)])[:-4], r"says it has 52 bytes and has 48"),
-        (glb([(b"JSON", JSON)]).replace(b"F\2", b"F\1"), r"GLB version 1 is unknown; export as glTF 2\.0"),
+        (glb([(b"JSON", JSON)]).replace(b"F\2", b"F\1"), r"is a GLB of version 1, and version 2 is read"),
         (glb([(b"BIN\0", b"    "), (b"JSON", JSON)]), r"byte 12: the JSON chunk is not the first"),
         (glb([(b"JSON", JSON), (b"JSON", JSON)]), r"byte 52: the JSON chunk is not the first"),
         (glb([(b"JSON", JSON), (b"WHAT", b""), (b"BIN\0", b"    ")]), r"byte 60: the binary chunk is not the second"),
@@ -108,6 +108,7 @@ JSON = b'{"asset":{"version":"2.0"}}     '
         (glb([(b"JSON", JSON)]).replace(b"\x20\0\0\0J", b"\x24\0\0\0J"), r"a chunk of 36 bytes where 32 are left"),
         (b'{"asset":{"version":"1.0"}}', r"asset: written in glTF 1\.0"),
         (b'{"asset":{"version":"2.1","minVersion":"2.1"}}', r"to be read by 2\.1 and later"),
+        (b'{"asset":{"version":"1.0"},"meshes":{"m":{}}}', "asset: is glTF 1.0, and glTF 2.0 is read"),
         (b'{"asset":{}}', r"asset: object missing required field `version`"),
         (b"{}", r"object missing required field `asset`"),
         (b'{"nodes":[{"mesh":"a"}]}', r"nodes\[0\]\.mesh: expected `int \| null`, got `str`"),

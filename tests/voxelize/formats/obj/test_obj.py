@@ -230,6 +230,18 @@ def test_a_library_with_a_bad_number(obj, line):
         obj("mtllib model.mtl\nusemtl a\n" + CUBE, f"newmtl a\n{line}\n")
 
 
+BASE = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 2 2 9\nf 4 3 2 1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n"
+
+
+def test_a_flat_base_hints_at_the_axis_that_nobody_states(obj):
+    """A pyramid that stands on z; one that stands on y; a box, which stands on either."""
+    standing = "\n".join(
+        "v {0} {2} {1}".format(*line.split()[1:]) if line.startswith("v") else line for line in BASE.splitlines()
+    )
+    assert kinds(obj(BASE, up="y")).get("up-axis") is None
+    assert [kinds(obj(text)).get("up-axis") for text in (BASE, standing, CUBE)] == [1, None, None]
+
+
 NAMED = """\
 v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0
 mtllib my #2 library.mtl # from the archive
@@ -264,6 +276,8 @@ def test_a_refusal_for_transparency_names_the_statement_and_the_option(statement
     library = f"newmtl pane\n{statement}\n"
     with pytest.raises(AssetError) as refused:
         obj(text, library)
-    expected = f"material 'pane' has '{statement.splitlines()[0]}'; write {fix} in its place, or build with --opaque-from"
+    expected = (
+        f"material 'pane' has '{statement.splitlines()[0]}'; write {fix} in its place, or build with --opaque-from"
+    )
     assert f"{expected} {opacity}" in str(refused.value)
     assert len(obj(text, library, opaque_from=float(opacity)).objects[0].mesh.triangles) == 1
