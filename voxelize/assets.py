@@ -34,6 +34,7 @@ _LOADERS = {
     ".toml": ("voxrt.voxelize.authoring.scene_toml", "load_scene_toml", {"allow_outside", "opaque_from"}),
     ".obj": ("voxrt.voxelize.formats.obj", "load_obj", {"up", "unit", "allow_outside", "opaque_from"}),
     ".stl": ("voxrt.voxelize.formats.stl.load", "load_stl", {"up", "unit"}),
+    ".vox": ("voxrt.voxelize.formats.vox.scene", "load_vox_scene", {"unit", "time"}),
     ".ply": ("voxrt.voxelize.formats.ply", "load_ply", {"up", "unit", "allow_outside", "opaque_from"}),
 }
 

@@ -183,6 +183,8 @@ class Scene:
         The author's light, likewise.
     cameras
         All cameras that the author gave, in authored order; the first is the `viewpoint` of scenes from files.
+    voxel_size
+        Metres per voxel of a scene that is made of voxels; None for others. Builds take it where no other is given.
 
     Raises
     ------
@@ -208,6 +210,7 @@ class Scene:
     viewpoint: Viewpoint | None = None
     light: PointLight | None = None
     cameras: tuple[Viewpoint, ...] = ()
+    voxel_size: float | None = None
 
     def __post_init__(self) -> None:
         arguments.text("Scene.name", self.name)
@@ -225,6 +228,8 @@ class Scene:
             arguments.instance("Scene.viewpoint", self.viewpoint, Viewpoint)
         if self.light is not None:
             arguments.instance("Scene.light", self.light, PointLight)
+        if self.voxel_size is not None:
+            object.__setattr__(self, "voxel_size", arguments.real("Scene.voxel_size", self.voxel_size, above=0))
         if not 1 <= len(self.materials) <= MATERIAL_LIMIT + 1:
             raise ValueError(f"Scene.materials must have 1 … {MATERIAL_LIMIT + 1} entries, not {len(self.materials)}")
         self._refuse_undeclared_materials()

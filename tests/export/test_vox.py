@@ -128,7 +128,7 @@ def test_what_is_left_out_is_said(tmp_path):
     assert octree.census(rom.octree).solid_voxels == 1
     assert warnings == (
         SceneWarning("vox-hidden", "nodes that the author hid are left out", 2),
-        SceneWarning("vox-animation", "only the first frame of animated nodes is shown", 2),
+        SceneWarning("vox-animation", "only the first frame of what is animated is shown", 2),
         SceneWarning("vox-material", "glass materials became plain colours", 1),
     )
 

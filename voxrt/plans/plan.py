@@ -49,10 +49,13 @@ def fit_plan(scene: Scene, options: BuildOptions, clock: StageClock, *, on_disk:
     than 2**16 voxels per side.
     """
     with clock.stage("fit"):
+        depth, voxel_size = options.depth, options.voxel_size
+        if depth is None and voxel_size is None:
+            depth, voxel_size = (None, scene.voxel_size) if scene.voxel_size else (DEFAULT_DEPTH, None)
         grid = voxelize.fit_grid(
             scene,
-            depth=DEFAULT_DEPTH if options.depth is None and options.voxel_size is None else options.depth,
-            voxel_size=options.voxel_size,
+            depth=depth,
+            voxel_size=voxel_size,
             geometry=options.geometry,
             pow2=options.pow2,
             bounds=None if options.bounds is None else (options.bounds[:3], options.bounds[3:]),

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 _VOXEL_LIMIT = 1 << 25
 _INSTANCE_LIMIT = 1 << 16
 _NESTING_LIMIT = 256
+_FIRST_FRAME = "only the first frame of what is animated is shown"
 _IDENTITY = np.eye(3, dtype=np.int64)
 
 
@@ -57,8 +58,8 @@ class VoxScene:
     warnings: tuple[SceneWarning, ...]
 
 
-def load_vox(path: Path | str) -> VoxScene:
-    """Load a MagicaVoxel file.
+def load_vox(path: Path | str, frame: int = 0) -> VoxScene:
+    """Load a MagicaVoxel file. `frame` is a number of an old animation: models without a scene graph.
 
     Raises
     ------
@@ -69,7 +70,7 @@ def load_vox(path: Path | str) -> VoxScene:
     """
     path = Path(path)
     file = read_chunks(path)
-    instances, skipped = _instances(path, file)
+    instances, skipped = _instances(path, file, frame)
     points, colours = _place(path, file, instances)
     used = np.unique(colours)
     materials = tuple(Material(f"colour {i}", _rgb(file, int(i))) for i in used)
@@ -77,11 +78,13 @@ def load_vox(path: Path | str) -> VoxScene:
     return VoxScene(points, ids, (EMPTY, *materials), (*skipped, *_plain_materials(file, used)))
 
 
-def _instances(path: Path, file: VoxFile) -> tuple[list[_Instance], list[SceneWarning]]:
-    """Return the instances of the scene graph; without one, every model is shown at the origin."""
+def _instances(path: Path, file: VoxFile, frame: int) -> tuple[list[_Instance], list[SceneWarning]]:
+    """Return the instances of the scene graph; without one, the models are frames, of which one is shown."""
     origin = np.zeros(3, dtype=np.int64)
     if not file.nodes:
-        return [_Instance(i, _IDENTITY, origin) for i in range(len(file.models))], []
+        shown = [_Instance(min(frame, len(file.models) - 1), _IDENTITY, origin)] if file.models else []
+        moving = len(file.models) > 1 and frame == 0
+        return shown, [SceneWarning("vox-animation", _FIRST_FRAME, len(file.models) - 1)] if moving else []
     found: list[_Instance] = []
     skipped: Counter[str] = Counter()
     waiting: list[tuple[int, NDArray[np.int64], NDArray[np.int64], tuple[int, ...]]] = [(0, _IDENTITY, origin, ())]
@@ -110,10 +113,7 @@ def _instances(path: Path, file: VoxFile) -> tuple[list[_Instance], list[SceneWa
         else:
             skipped["animation"] += len(node.models) > 1
             found.append(_Instance(_first_model(path, number, node, len(file.models)), rows, offset))
-    messages = {
-        "hidden": "nodes that the author hid are left out",
-        "animation": "only the first frame of animated nodes is shown",
-    }
+    messages = {"hidden": "nodes that the author hid are left out", "animation": _FIRST_FRAME}
     return found, [SceneWarning(f"vox-{kind}", messages[kind], skipped[kind]) for kind in messages if skipped[kind]]
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import voxrt
 from voxrt.cli.terminal.messages import warn
 from voxrt.cli.terminal.progress import build_bar
+from voxrt.export import READABLE_SUFFIXES
 from voxrt.octree.camera import refit
 from voxrt.options.shared import PREVIEW_SIZE
 from voxrt.options.view_options import CameraOptions
@@ -49,8 +50,9 @@ class Source:
 
 
 def is_asset(path: Path) -> bool:
-    """Tell whether a file must be built first."""
-    return path.suffix.lower() in SUFFIXES
+    """Tell whether a file must be built first: files of voxels are read as they are."""
+    suffix = path.suffix.lower()
+    return suffix in SUFFIXES and suffix not in READABLE_SUFFIXES
 
 
 def read_source(
