@@ -63,10 +63,18 @@ const IDENTITY = [0, 1, 2].map((row) => [0, 1, 2].map((column) => Number(row ===
   return { words, depth, materials, objects: [], grid: null, warnings };
 }
 
-/** The instances of the scene graph, or every model at the origin. @param {string} name @param {VoxFile} file */
+const FIRST_FRAME = "only the first frame of what is animated is shown";
+
+/** The instances of the scene graph; without one, the models are frames. @param {string} name @param {VoxFile} file */
 function instancesOf(name, file) {
-  if (!file.nodes.size)
-    return { instances: file.models.map((_, model) => ({ model, rows: IDENTITY, offset: [0, 0, 0] })), warnings: [] };
+  if (!file.nodes.size) {
+    const warnings =
+      file.models.length > 1 ? [{ kind: "vox-animation", message: FIRST_FRAME, count: file.models.length - 1 }] : [];
+    return {
+      instances: file.models.slice(0, 1).map(() => ({ model: 0, rows: IDENTITY, offset: [0, 0, 0] })),
+      warnings,
+    };
+  }
   /** @type {Instance[]} */ const instances = [];
   let [hidden, animated, visited] = [0, 0, 0];
   /** @type {{ number: number, rows: number[][], offset: number[], above: number[] }[]} */
@@ -104,7 +112,6 @@ function instancesOf(name, file) {
   }
   /** @type {Warning[]} */ const warnings = [];
   if (hidden) warnings.push({ kind: "vox-hidden", message: "nodes that the author hid are left out", count: hidden });
-  const still = "only the first frame of animated nodes is shown";
-  if (animated) warnings.push({ kind: "vox-animation", message: still, count: animated });
+  if (animated) warnings.push({ kind: "vox-animation", message: FIRST_FRAME, count: animated });
   return { instances, warnings };
 }

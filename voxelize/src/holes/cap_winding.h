@@ -52,8 +52,8 @@ public:
     /// All caps near.
     Seen all() const { return {{}, {}, {0}}; }
     /// What a ball sees that lies in the ball of `outer`. Nodes whose error is at most `far_error` each are far; others
-    /// are opened, down to caps or below a radius of `smallest`. Gives up, and returns false, where more than `most` are
-    /// near.
+    /// are opened, down to caps or below a radius of `smallest`. Gives up, and returns false, where more than `most`
+    /// are near.
     bool split(const Seen& outer, const Point& centre, double radius, double far_error, double smallest, size_t most,
                Seen& seen) const;
     /// The cap of a node that has one.
