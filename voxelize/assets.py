@@ -34,6 +34,11 @@ _LOADERS = {
     ".toml": ("voxrt.voxelize.authoring.scene_toml", "load_scene_toml", {"allow_outside", "opaque_from"}),
     ".obj": ("voxrt.voxelize.formats.obj", "load_obj", {"up", "unit", "allow_outside", "opaque_from"}),
     ".stl": ("voxrt.voxelize.formats.stl.load", "load_stl", {"up", "unit"}),
+    ".off": ("voxrt.voxelize.formats.by_trimesh", "load_off", {"up", "unit"}),
+    ".3mf": ("voxrt.voxelize.formats.by_trimesh", "load_3mf", set()),
+    ".dae": ("voxrt.voxelize.formats.by_trimesh", "load_dae", set()),
+    ".step": ("voxrt.voxelize.formats.by_trimesh", "load_step", {"opaque_from"}),
+    ".stp": ("voxrt.voxelize.formats.by_trimesh", "load_step", {"opaque_from"}),
     ".vox": ("voxrt.voxelize.formats.vox.scene", "load_vox_scene", {"unit", "time"}),
     ".ply": ("voxrt.voxelize.formats.ply", "load_ply", {"up", "unit", "allow_outside", "opaque_from"}),
 }
@@ -173,5 +178,9 @@ def _suffix(path: Path) -> str:
         raise AssetError(path, problem, fix="check the path")
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
-        raise AssetError(path, f"unknown kind of file {path.suffix!r}", fix=f"use one of {', '.join(SUFFIXES)}")
+        raise AssetError(
+            path,
+            f"unknown kind of file {path.suffix!r}",
+            fix=f"convert it, by Blender or MeshLab for example, to one of {', '.join(SUFFIXES)}",
+        )
     return suffix

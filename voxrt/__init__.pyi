@@ -40,7 +40,6 @@ from voxrt.sim import comparison_sheet as comparison_sheet
 from voxrt.sim import follow_ray as follow_ray
 from voxrt.sim import shader_features as shader_features
 from voxrt.sources.frames import frame_times as frame_times
-from voxrt.sources.from_arrays import mesh_scene as mesh_scene
 from voxrt.view import ViewerError as ViewerError
 from voxrt.views.depth_likeness import LikenessAtDepth as LikenessAtDepth
 from voxrt.views.depth_likeness import draw_likeness_curve as draw_likeness_curve
@@ -62,5 +61,6 @@ from voxrt.voxelize import Scene as Scene
 from voxrt.voxelize import SceneWarning as SceneWarning
 from voxrt.voxelize import fit_grid as fit_grid
 from voxrt.voxelize import load as load
+from voxrt.voxelize.from_arrays import mesh_scene as mesh_scene
 
 __version__: str

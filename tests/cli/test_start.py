@@ -18,7 +18,7 @@ OTHER_WORK = {
     "voxrt.building.baking",
     "voxrt.board",
     "voxrt.building.fitting",
-    "voxrt.sources.from_arrays",
+    "voxrt.voxelize.from_arrays",
     "voxrt.octree.budget",
     "voxrt.views.pictures",
     "voxrt.serve",

@@ -168,7 +168,7 @@ def voxelize_mesh(
     >>> cube.coordinates.shape
     (512, 3)
     """
-    from voxrt.sources.from_arrays import mesh_scene  # noqa: PLC0415 - most builds are of files
+    from voxrt.voxelize.from_arrays import mesh_scene  # noqa: PLC0415 - most builds are of files
 
     scene = mesh_scene(vertices, faces, colours=colours, face_colours=face_colours, up=up, unit=unit)
     return build(scene, depth=depth, voxel_size=voxel_size, fill=fill, threads=threads)

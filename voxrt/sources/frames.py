@@ -10,12 +10,12 @@ from itertools import takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
-from voxrt.sources.from_trimesh import is_trimesh
 from voxrt.sources.source import open_source
 from voxrt.voxelize import AssetError, Scene
 from voxrt.voxelize.arguments import real, whole
 from voxrt.voxelize.assets import SUFFIXES
 from voxrt.voxelize.formats.external_files import as_text
+from voxrt.voxelize.from_trimesh import is_trimesh
 
 if TYPE_CHECKING:
     from voxrt.options.build_options import BuildOptions

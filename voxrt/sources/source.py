@@ -86,8 +86,8 @@ class Source:
         )
 
     def _value_scene(self) -> Scene:
-        from voxrt.sources.from_arrays import mesh_scene  # noqa: PLC0415 - files do not need it
-        from voxrt.sources.from_trimesh import is_trimesh, trimesh_scene  # noqa: PLC0415
+        from voxrt.voxelize.from_arrays import mesh_scene  # noqa: PLC0415 - files do not need it
+        from voxrt.voxelize.from_trimesh import is_trimesh, trimesh_scene  # noqa: PLC0415
 
         value, options = self.value, self.options
         unused = {name: getattr(options, name) for name in ("time", "animation", "variants", "opaque_from")}
@@ -118,7 +118,7 @@ def open_source(asset: Asset, options: BuildOptions) -> Source:
     if isinstance(asset, Scene):
         name = as_text(asset.name)
     else:
-        from voxrt.sources.from_trimesh import is_trimesh  # noqa: PLC0415 - files do not need it
+        from voxrt.voxelize.from_trimesh import is_trimesh  # noqa: PLC0415 - files do not need it
 
         if is_trimesh(asset):
             name = as_text(Path(str(asset.metadata.get("name") or asset.metadata.get("file_name") or name)).stem)

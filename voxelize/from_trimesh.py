@@ -10,21 +10,24 @@ from typing import TYPE_CHECKING, Any, TypeGuard
 
 import numpy as np
 
-from voxrt.sources.from_arrays import appearance_of_corners, triangles_of
-from voxrt.voxelize import DEFAULT_COLOUR, Appearance, Scene, SceneObject, SurfaceAppearance, Texture
 from voxrt.voxelize.arguments import real_array
+from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
 from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8
+from voxrt.voxelize.colour.texture import Texture
 from voxrt.voxelize.formats.material_table import MaterialTable
 from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
 from voxrt.voxelize.formats.opacity import OPAQUE_FROM
 from voxrt.voxelize.formats.scene_frame import scene_transform
+from voxrt.voxelize.from_arrays import appearance_of_corners, triangles_of
+from voxrt.voxelize.materials import DEFAULT_COLOUR
+from voxrt.voxelize.scene import Scene, SceneObject
 from voxrt.voxelize.warning_log import WarningLog
 
 if TYPE_CHECKING:
     import trimesh
     from numpy.typing import NDArray
 
-    from voxrt.options.build_options import UpAxis
+    from voxrt.voxelize.assets import UpAxis
 
 _OPAQUE_WHITE = (1.0, 1.0, 1.0, 1.0)
 

@@ -1,0 +1,202 @@
+"""OFF, 3MF, COLLADA and STEP: units, axes, colours and components as the file says."""
+
+import zipfile
+from itertools import product
+
+import numpy as np
+import pytest
+import trimesh
+from oracles.sound_scenes import kinds
+
+import voxrt
+from voxrt.voxelize import AssetError, load
+
+BOX = trimesh.creation.box((10, 20, 40))
+MODEL = """\
+<model {unit} xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
+ xmlns:m="http://schemas.microsoft.com/3dmanufacturing/material/2015/02">
+<resources>
+<basematerials id="5"><base name="red" displaycolor="#FF0000"/>
+<base name="blue" displaycolor="#0000FFFF"/></basematerials>
+<m:colorgroup id="6"><m:color color="#00FF00"/></m:colorgroup>
+<object id="1" name="part" pid="5" pindex="0"><mesh><vertices>{vertices}</vertices>
+<triangles>{triangles}</triangles></mesh></object>
+<object id="2"><components><component objectid="1"/>
+<component objectid="1" transform="1 0 0 0 1 0 0 0 1 50 0 0"/></components></object>
+</resources><build><item objectid="2"/></build></model>"""
+
+
+def bounds(scene):
+    points = [one.mesh.positions @ one.transform[:3, :3].T + one.transform[:3, 3] for one in scene.objects]
+    return np.concatenate(points).min(axis=0), np.concatenate(points).max(axis=0)
+
+
+def write_3mf(path, model):
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("3D/3dmodel.model", model)
+    return path
+
+
+def model_of_a_box(unit):
+    vertices = "".join('<vertex x="{}" y="{}" z="{}"/>'.format(*corner) for corner in BOX.vertices)
+    colours = ['pid="6" p1="0"'] * 2 + ['pid="5" p1="1"'] * 4 + [""] * 6
+    triangles = "".join(
+        '<triangle v1="{}" v2="{}" v3="{}" {}/>'.format(*face, colour)
+        for face, colour in zip(BOX.faces, colours, strict=True)
+    )
+    return MODEL.format(unit=unit, vertices=vertices, triangles=triangles)
+
+
+@pytest.mark.parametrize(("unit", "metres"), [("", 1e-3), ('unit="inch"', 0.0254)])
+def test_3mf_has_units_components_and_colours(unit, metres, tmp_path):
+    scene = load(write_3mf(tmp_path / "a.3mf", model_of_a_box(unit)))
+    low, high = bounds(scene)
+    np.testing.assert_allclose(low, np.array([-5, -20, -10]) * metres)
+    np.testing.assert_allclose(high, np.array([55, 20, 10]) * metres)
+    assert len(scene.objects) == 2
+    assert scene.objects[0].mesh is scene.objects[1].mesh
+    corners = scene.objects[0].mesh.appearance.colours[:, 0, :3]
+    assert corners.tolist() == [[0, 1, 0]] * 2 + [[0, 0, 1]] * 4 + [[1, 0, 0]] * 6
+
+
+def test_a_3mf_of_another_program(tmp_path):
+    path = tmp_path / "b.3mf"
+    path.write_bytes(trimesh.Scene(BOX).export(file_type="3mf"))
+    built = voxrt.build(path, depth=5)
+    assert built.solid_voxels == 8 * 16 * 32
+
+
+def test_collada_has_a_unit_an_up_axis_and_colours(tmp_path):
+    box = BOX.copy()
+    box.visual.face_colors = (200, 30, 30, 255)
+    text = box.export(file_type="dae").decode()
+    assert "<up_axis>Y_UP</up_axis>" in text
+    for axis, unit, low in (("Y", 1, (-5, -10, -20)), ("Z", 0.01, (-0.05, -0.2, -0.1))):
+        path = tmp_path / f"{axis}.dae"
+        path.write_text(
+            text.replace("<up_axis>Y_UP</up_axis>", f'<unit name="u" meter="{unit}"/><up_axis>{axis}_UP</up_axis>')
+        )
+        scene = load(path)
+        np.testing.assert_allclose(bounds(scene)[0], low)
+        assert [one.colour for one in scene.materials[1:]] == [(200, 30, 30)]
+
+
+def test_off_is_read_as_the_user_says(tmp_path):
+    path = tmp_path / "a.off"
+    path.write_text(BOX.export(file_type="off"))
+    scene = load(path, up="z", unit=0.1)
+    np.testing.assert_allclose(bounds(scene)[1], (0.5, 2, 1))
+    assert kinds(scene) == {}
+    assert scene.objects[0].name == "a"
+
+
+def step_of_a_box(sides, unit="SI_UNIT(.MILLI.,.METRE.)"):
+    """An AP214 file of a box, from the origin to `sides`: one solid with six plane faces."""
+    lines = []
+
+    def add(text):
+        lines.append(f"#{len(lines) + 1}={text};")
+        return f"#{len(lines)}"
+
+    def triple(kind, values):
+        return add(f"{kind}('',({','.join(f'{float(v)!r}' for v in values)}))")
+
+    points = {
+        c: triple("CARTESIAN_POINT", [s * k for s, k in zip(sides, c, strict=True)]) for c in product((0, 1), repeat=3)
+    }
+    corners = {c: add(f"VERTEX_POINT('',{p})") for c, p in points.items()}
+    edges = {}
+    for c, corner in corners.items():
+        for axis in range(3):
+            if c[axis] == 0:
+                end = tuple(1 if i == axis else v for i, v in enumerate(c))
+                way = triple("DIRECTION", [float(i == axis) for i in range(3)])
+                vector = add(f"VECTOR('',{way},1.)")
+                line = add(f"LINE('',{points[c]},{vector})")
+                edges[c, end] = add(f"EDGE_CURVE('',{corner},{corners[end]},{line},.T.)")
+    faces = []
+    for axis in range(3):
+        u, v = (axis + 1) % 3, (axis + 2) % 3
+        for side in (0, 1):
+            ring = []
+            for a, b in ((0, 0), (1, 0), (1, 1), (0, 1)):
+                c = [0, 0, 0]
+                c[axis], c[u], c[v] = side, a, b
+                ring.append(tuple(c))
+            ring = ring if side else ring[::-1]
+            oriented = []
+            for start, end in zip(ring, [*ring[1:], ring[0]], strict=True):
+                forward = (start, end) in edges
+                curve = edges[(start, end) if forward else (end, start)]
+                oriented.append(add(f"ORIENTED_EDGE('',*,*,{curve},{'.T.' if forward else '.F.'})"))
+            bound = add(f"FACE_OUTER_BOUND('',{add(f'EDGE_LOOP({chr(39)}{chr(39)},({chr(44).join(oriented)}))')},.T.)")
+            normal = triple("DIRECTION", [float((2 * side - 1) * (i == axis)) for i in range(3)])
+            along = triple("DIRECTION", [float(i == u) for i in range(3)])
+            place = add(f"AXIS2_PLACEMENT_3D('',{points[ring[0]]},{normal},{along})")
+            plane = add(f"PLANE('',{place})")
+            faces.append(add(f"ADVANCED_FACE('',({bound}),{plane},.T.)"))
+    shell = add(f"CLOSED_SHELL('',({','.join(faces)}))")
+    solid = add(f"MANIFOLD_SOLID_BREP('box',{shell})")
+    length = add(f"(LENGTH_UNIT()NAMED_UNIT(*){unit})")
+    angle = add("(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.))")
+    solid_angle = add("(NAMED_UNIT(*)SI_UNIT($,.STERADIAN.)SOLID_ANGLE_UNIT())")
+    small = add(f"UNCERTAINTY_MEASURE_WITH_UNIT(LENGTH_MEASURE(1.E-07),{length},'','')")
+    context = add(
+        f"(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT(({small}))"
+        f"GLOBAL_UNIT_ASSIGNED_CONTEXT(({length},{angle},{solid_angle}))REPRESENTATION_CONTEXT('',''))"
+    )
+    origin = add(
+        f"AXIS2_PLACEMENT_3D('',{points[0, 0, 0]},{triple('DIRECTION', (0, 0, 1))},{triple('DIRECTION', (1, 0, 0))})"
+    )
+    shape = add(f"ADVANCED_BREP_SHAPE_REPRESENTATION('box',({origin},{solid}),{context})")
+    application = add("APPLICATION_CONTEXT('automotive design')")
+    add(f"APPLICATION_PROTOCOL_DEFINITION('international standard','automotive_design',2000,{application})")
+    product_context = add(f"PRODUCT_CONTEXT('',{application},'mechanical')")
+    part = add(f"PRODUCT('box','box','',({product_context}))")
+    formation = add(f"PRODUCT_DEFINITION_FORMATION('','',{part})")
+    definition_context = add(f"PRODUCT_DEFINITION_CONTEXT('part definition',{application},'design')")
+    definition = add(f"PRODUCT_DEFINITION('design','',{formation},{definition_context})")
+    add(
+        f"SHAPE_DEFINITION_REPRESENTATION({add(f'PRODUCT_DEFINITION_SHAPE({chr(39)}{chr(39)},{chr(39)}{chr(39)},{definition})')},{shape})"
+    )
+    header = (
+        "HEADER;FILE_DESCRIPTION((''),'2;1');FILE_NAME('','',(''),(''),'','','');"
+        "FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));ENDSEC;"
+    )
+    return "\n".join(["ISO-10303-21;", header, "DATA;", *lines, "ENDSEC;", "END-ISO-10303-21;", ""])
+
+
+@pytest.mark.parametrize(("unit", "metres"), [("SI_UNIT(.MILLI.,.METRE.)", 1e-3), ("SI_UNIT($,.METRE.)", 1)])
+def test_step_is_read_in_metres_with_z_up(unit, metres, tmp_path):
+    path = tmp_path / "a.step"
+    path.write_text(step_of_a_box((1, 2, 4), unit))
+    scene = load(path)
+    np.testing.assert_allclose(bounds(scene), np.array([[0, 0, -2], [1, 4, 0]]) * metres, atol=1e-6)
+    assert voxrt.build(path, depth=4).solid_voxels == 4 * 8 * 16
+
+
+@pytest.mark.parametrize(
+    ("name", "data", "message"),
+    [
+        ("a.off", b"", "trimesh cannot read it"),
+        ("a.off", b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 9\n", "trimesh cannot read it .*index"),
+        ("a.3mf", b"PK\x03\x04", "is no 3MF package"),
+        ("a.dae", b"<COLLADA>", "its XML is broken"),
+        ("a.dae", b"<COLLADA/>", "trimesh cannot read it"),
+        ("a.step", b"ISO-10303-21;", "OpenCASCADE cannot read it"),
+        ("a.xyzzy", b"", "unknown kind of file '.xyzzy'; convert it"),
+    ],
+)
+def test_what_cannot_be_read_is_refused(name, data, message, tmp_path):
+    path = tmp_path / name
+    path.write_bytes(data)
+    with pytest.raises(AssetError, match=message):
+        load(path)
+
+
+def test_a_3mf_without_objects_or_with_another_unit_is_refused(tmp_path):
+    with pytest.raises(AssetError, match="has the unit 'cubit'"):
+        load(write_3mf(tmp_path / "a.3mf", model_of_a_box('unit="cubit"')))
+    zipfile.ZipFile(tmp_path / "b.3mf", "w").close()
+    with pytest.raises(AssetError, match="is no 3MF package"):
+        load(tmp_path / "b.3mf")

@@ -1,0 +1,241 @@
+"""OFF, 3MF, COLLADA and STEP files, read by trimesh and by what it uses.
+
+A file of 3MF or COLLADA says its unit and its up axis, and its colours are sRGB; trimesh hands on neither, nor the
+colours of 3MF: they are read here.
+"""
+
+from __future__ import annotations
+
+import io
+import subprocess
+import sys
+import tempfile
+import zipfile
+from dataclasses import dataclass, replace
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.formats.external_files import asset_name, read_asset
+from voxrt.voxelize.formats.opacity import OPAQUE_FROM
+from voxrt.voxelize.formats.scene_frame import scene_transform
+from voxrt.voxelize.from_trimesh import trimesh_scene
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from voxrt.voxelize.assets import UpAxis
+    from voxrt.voxelize.scene import Scene
+
+_DAMAGED = "check the file in another program, and export it again"
+_UNITS = {"micron": 1e-6, "millimeter": 1e-3, "centimeter": 1e-2, "inch": 0.0254, "foot": 0.3048, "meter": 1.0}
+_UP_AXES: dict[str, UpAxis] = {"X_UP": "x", "Y_UP": "y", "Z_UP": "z"}
+_LARGEST = 1 << 30
+"""Bytes that the parts of a 3MF file may unpack to."""
+
+_STEP_SECONDS = 600
+_CONVERT_STEP = "import sys, cascadio; sys.exit(cascadio.step_to_glb(sys.argv[1], sys.argv[2]) or 0)"
+
+
+def load_off(path: str | Path, *, up: UpAxis | None = None, unit: float | None = None) -> Scene:
+    """Read an OFF file: one object. Its colours are not read.
+
+    `up` and `unit` are as for :func:`voxrt.voxelize.load`. AssetError where it cannot be read.
+    """
+    path = Path(path)
+    scene = _loaded(path, read_asset(path), "off")
+    return _scene(path, next(iter(scene.geometry.values()), scene), up, unit)
+
+
+def load_3mf(path: str | Path) -> Scene:
+    """Read a 3MF file: an object per built item, with components and colours.
+
+    AssetError where it cannot be read, or the extra ``cad`` is not installed.
+    """
+    path = Path(path)
+    _need(path, "lxml", "networkx")
+    data = read_asset(path)
+    model = _model_of(path, data)
+    scene = _loaded(path, data, "3mf")
+    for name, colours in _colours_of_objects(path, model).items():
+        if name in scene.geometry and len(scene.geometry[name].faces) == len(colours):
+            scene.geometry[name].visual = import_module("trimesh.visual").ColorVisuals(
+                scene.geometry[name], face_colors=colours
+            )
+    unit = next((element.get("unit") for element in _elements(path, model, "model", event="start")), None)
+    if (unit or "millimeter") not in _UNITS:
+        raise AssetError(path, f"has the unit {unit!r}", fix=f"use one of {', '.join(_UNITS)}")
+    return _scene(path, scene, "z", _UNITS[unit or "millimeter"])
+
+
+def load_dae(path: str | Path) -> Scene:
+    """Read a COLLADA file: an object per geometry and node, with the colours and textures of its materials.
+
+    AssetError where it cannot be read, or the extra ``cad`` is not installed.
+    """
+    path = Path(path)
+    _need(path, "lxml", "collada")
+    data = read_asset(path)
+    unit = 1.0
+    up: UpAxis = "y"
+    for element in _elements(path, data, "unit", "up_axis"):
+        if element.tag.endswith("unit"):
+            unit = float(element.get("meter") or 1)
+        else:
+            up = _UP_AXES.get((element.text or "").strip(), "y")
+    scene = _loaded(path, data, "dae", resolver=import_module("trimesh.resolvers").FilePathResolver(str(path)))
+    for geometry in scene.geometry.values():
+        material = getattr(geometry.visual, "material", None)
+        factor = getattr(material, "baseColorFactor", None)
+        if material is not None and factor is not None and material.baseColorTexture is None:
+            # The factor is sRGB, and not linear as in glTF.
+            geometry.visual.material = import_module("trimesh.visual.material").SimpleMaterial(
+                diffuse=np.asarray(factor, np.uint8), name=material.name
+            )
+    return _scene(path, scene, up, unit)
+
+
+def load_step(path: str | Path, *, opaque_from: float = OPAQUE_FROM) -> Scene:
+    """Read a STEP file: its solids as triangles, by OpenCASCADE, in a process of its own.
+
+    AssetError where it cannot be read, or the extra ``cad`` is not installed.
+    """
+    from voxrt.voxelize.formats.gltf import load_gltf  # noqa: PLC0415 - most files need it not
+
+    path = Path(path)
+    _need(path, "cascadio")
+    read_asset(path)  # for its errors
+    with tempfile.TemporaryDirectory(prefix="voxrt-step-") as folder:
+        made = Path(folder, f"{asset_name(path)[:64] or 'part'}.glb")
+        command = [sys.executable, "-P", "-c", _CONVERT_STEP, str(path.resolve()), str(made)]
+        try:
+            done = subprocess.run(command, capture_output=True, timeout=_STEP_SECONDS, check=False)  # noqa: S603
+        except subprocess.TimeoutExpired:
+            raise AssetError(path, f"takes more than {_STEP_SECONDS} seconds to read", fix=_DAMAGED) from None
+        if done.returncode != 0 or not made.exists():
+            raise AssetError(path, "OpenCASCADE cannot read it", fix=_DAMAGED)
+        try:
+            scene = load_gltf(made, opaque_from=opaque_from)
+        except AssetError as error:
+            raise AssetError(path, error.problem, fix=_DAMAGED) from None
+    upright = scene_transform("z", None)  # which CAD programs mean: the format does not say
+    objects = tuple(replace(one, transform=upright @ one.transform) for one in scene.objects)
+    return replace(scene, name=asset_name(path), objects=objects)
+
+
+def _need(path: Path, *modules: str) -> None:
+    for module in modules:
+        try:
+            import_module(module)
+        except ImportError:
+            fix = "install it: pip install 'voxrt-build[cad]'"
+            raise AssetError(path, f"takes the extra cad, of which {module} is missing", fix=fix) from None
+
+
+def _loaded(path: Path, data: bytes, kind: str, **options: Any) -> Any:  # noqa: ANN401 - trimesh has no types
+    import trimesh  # noqa: PLC0415 - it is slow to import
+
+    try:
+        return trimesh.load_scene(io.BytesIO(data), file_type=kind, process=False, **options)
+    except MemoryError:
+        raise
+    except Exception as error:  # noqa: BLE001 - it raises whatever its parsers do
+        what = " ".join(str(error).split())[:120] or type(error).__name__
+        raise AssetError(path, f"trimesh cannot read it ({what})", fix=_DAMAGED) from None
+
+
+def _scene(path: Path, scene: Any, up: UpAxis | None, unit: float | None) -> Scene:  # noqa: ANN401 - trimesh has no types
+    try:
+        made = trimesh_scene(scene, name=asset_name(path), up=up, unit=unit)
+    except (TypeError, ValueError) as error:
+        raise AssetError(path, str(error), fix=_DAMAGED) from None
+    if not any(len(one.mesh.triangles) for one in made.objects):
+        raise AssetError(path, "has no triangles", fix="export it with its surface")
+    return made
+
+
+def _model_of(path: Path, data: bytes) -> bytes:
+    """Return the part of a 3MF file that has its objects."""
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            if sum(one.file_size for one in archive.infolist()) > _LARGEST:
+                raise AssetError(path, "unpacks to more than 1 GiB", fix="split it")
+            names = [name for name in archive.namelist() if "3d/3dmodel.model" in name.lower()]
+            return archive.read(names[0])
+    except (zipfile.BadZipFile, IndexError, OSError, NotImplementedError, RuntimeError, EOFError, ValueError) as error:
+        raise AssetError(path, f"is no 3MF package ({type(error).__name__})", fix=_DAMAGED) from None
+
+
+def _elements(path: Path, text: bytes, *tags: str, event: str = "end") -> Iterator[Any]:
+    etree = import_module("lxml.etree")
+    try:
+        for _, element in etree.iterparse(
+            io.BytesIO(text),
+            events=(event,),
+            tag=[f"{{*}}{tag}" for tag in tags],
+            resolve_entities=False,
+            no_network=True,
+        ):
+            yield element
+    except etree.XMLSyntaxError as error:
+        raise AssetError(path, f"its XML is broken ({error.msg})", fix=_DAMAGED) from None
+
+
+@dataclass(frozen=True, slots=True)
+class _Triangles:
+    """Which colours the triangles of an object have: group and row, or None."""
+
+    name: str
+    colours: list[tuple[str, int] | None]
+
+
+def _colours_of_objects(path: Path, model: bytes) -> dict[str, NDArray[np.uint8]]:
+    """Return the colours of triangles, uint8, shape (T, 4), of each object that has some, by its name in trimesh."""
+    unique_name = import_module("trimesh.util").unique_name
+    groups: dict[str, list[tuple[int, ...]]] = {}
+    objects: list[_Triangles] = []
+    used: set[str] = set()
+    counts: dict[str, int] = {}
+    for element in _elements(path, model, "basematerials", "colorgroup", "object"):
+        number = element.get("id", "")
+        if not element.tag.endswith("object"):
+            groups[number] = [_colour(one.get("displaycolor") or one.get("color") or "") for one in element]
+            continue
+        name = unique_name(element.get("name", number), used, counts)
+        used.add(name)
+        own = element.get("pid"), element.get("pindex")
+        rows = [_reference(one.get("pid") or own[0], one.get("p1") or own[1]) for one in element.iter("{*}triangle")]
+        if any(row is not None for row in rows):
+            objects.append(_Triangles(name, rows))
+    return {
+        one.name: np.array(
+            [_DEFAULT if row is None else _at(groups.get(row[0], []), row[1]) for row in one.colours], np.uint8
+        )
+        for one in objects
+    }
+
+
+_DEFAULT = (200, 200, 200, 255)
+
+
+def _reference(group: str | None, row: str | None) -> tuple[str, int] | None:
+    return (group, int(row)) if group is not None and row is not None and row.isdecimal() else None
+
+
+def _at(colours: list[tuple[int, ...]], row: int) -> tuple[int, ...]:
+    return colours[row] if row < len(colours) else _DEFAULT
+
+
+def _colour(text: str) -> tuple[int, ...]:
+    """Return ``#RRGGBB`` or ``#RRGGBBAA`` as red, green, blue and opacity."""
+    digits = text.strip().lstrip("#")
+    try:
+        found = bytes.fromhex(digits)
+    except ValueError:
+        return _DEFAULT
+    return (*found, 255)[:4] if len(found) in (3, 4) else _DEFAULT
