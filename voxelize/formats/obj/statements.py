@@ -158,21 +158,27 @@ def _vertices(
             text.path, "a vertex needs three numbers", place=text.place(lines[short[0]]), fix="repair the vertex"
         )
     begins = np.cumsum(counts) - counts
+    log.add("vertex-numbers", "numbers after a vertex's place and colour were left out", _left_out(values, counts))
     coloured = counts >= 6
     colours = None
     if coloured.any():
         colours = np.ones((len(counts), 3))
-        # Three numbers or four: a weight may stand before the colour.
-        colours[coloured] = values[(begins + counts)[coloured, None] + np.arange(-3, 0)]
+        # Numbers four to six, as in MeshLab, Blender, three.js and tinyobjloader; what follows differs between them.
+        colours[coloured] = values[begins[coloured, None] + np.arange(3, 6)]
         broken = ~np.isfinite(colours).all(axis=1)
         log.add("vertex-colour", "vertex colours that are not numbers were taken as black", int(broken.sum()))
         colours[broken] = 0.0
-        if colours.max() > 1.0:  # some programs write 0 ... 255
-            colours[coloured] /= 255.0
+        log.add("colour-range", "vertex colours above 1 were clamped", int((colours > 1.0).any(axis=1).sum()))
         colours = np.clip(colours, 0.0, 1.0)
     if len(counts) and (counts == counts[0]).all():
         return np.ascontiguousarray(values.reshape(len(counts), -1)[:, :3]), colours
     return values[begins[:, None] + np.arange(3)], colours
+
+
+def _left_out(values: NDArray[np.float64], counts: NDArray[np.int64]) -> int:
+    """Return how many vertices have numbers that are not read; a fourth number is a weight, and 1 says nothing."""
+    weights = values[(np.cumsum(counts) - counts)[counts == 4] + 3]
+    return int((counts == 5).sum() + (counts > 6).sum() + (weights != 1.0).sum())
 
 
 def _faces(

@@ -90,9 +90,25 @@ def test_vertex_colours_are_srgb_and_multiplied_with_kd(obj):
     assert dyed.name == "dye"
 
 
-def test_vertex_colours_of_0_to_255_and_beside_a_weight(obj):
-    text = "v 0 0 0 1 255 0 0\nv 1 0 0 1 255 0 0\nv 0 1 0 1 255 0 0\nf 1 2 3\n"
-    assert obj(text).materials[1].colour == (255, 0, 0)
+@pytest.mark.parametrize(
+    ("row", "colour", "warned"),
+    [
+        ("", None, set()),
+        ("1", None, set()),
+        ("0.5", None, {"vertex-numbers"}),
+        ("1 0", None, {"vertex-numbers"}),
+        ("1 0 0", RED, set()),
+        ("1 0 0 1", RED, {"vertex-numbers"}),
+        ("1 0 0 1 1", RED, {"vertex-numbers"}),
+        ("255 0 0", RED, {"colour-range"}),
+        ("1.5 0.5 0", (255, 128, 0), {"colour-range"}),
+    ],
+)
+def test_the_numbers_after_a_place(row, colour, warned, obj):
+    scene = obj(f"v 0 0 0 {row}\nv 1 0 0 {row}\nv 0 1 0 {row}\nf 1 2 3\n")
+    if colour is not None:
+        assert scene.materials[1].colour == colour
+    assert {kind for kind, count in kinds(scene).items() if count == 3} == warned
 
 
 def test_faces_without_colour_keep_their_material(obj):
