@@ -172,6 +172,13 @@ def triangles_of_strips(strips: ListColumn) -> NDArray[np.float64]:
     return triangles[real]  # without those that only connect one strip to the next
 
 
+def _without_faces(path: Path, vertices: Table) -> AssetError:
+    """Return the error for a file that has points alone, or Gaussians."""
+    if {"f_dc_0", "opacity", "scale_0", "rot_0"} <= vertices.keys():
+        return AssetError(path, "is a Gaussian splat, which has no surface", fix="make a mesh of it")
+    return AssetError(path, "has no faces", fix="export it with its polygons; point clouds have no surface")
+
+
 def _geometry(
     path: Path, tables: dict[str, Table], log: WarningLog
 ) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int32], NDArray[np.int64]]:
@@ -180,7 +187,7 @@ def _geometry(
     axes = [vertices.get(axis) for axis in "xyz"]
     polygons = _polygons(tables)
     if polygons is None or not len(polygons.counts):
-        raise AssetError(path, "has no faces", fix="export it with its polygons; point clouds have no surface")
+        raise _without_faces(path, vertices)
     if any(axis is None or isinstance(axis, ListColumn) for axis in axes):
         raise AssetError(path, "has vertices without x, y and z", fix="export it again")
     positions = np.stack([np.asarray(axis, dtype=np.float64) for axis in axes], axis=1)

@@ -43,6 +43,13 @@ def pyramid(encoding):
     return data
 
 
+SPLAT = b"ply\nformat ascii 1.0\nelement vertex 1\n"
+SPLAT += b"".join(
+    b"property float %s\n" % name for name in (b"x", b"y", b"z", b"f_dc_0", b"opacity", b"scale_0", b"rot_0")
+)
+SPLAT += b"end_header\n0 0 0 0 0 0 0\n"
+
+
 @pytest.fixture
 def ply(tmp_path):
     def write(data, **options):
@@ -126,6 +133,7 @@ def test_faces_that_are_transparent_are_air(ply):
         (header("ascii", 1, 1) + b"0 0 0 -3 0 0 0 0", "ends before its 1 face rows do"),
         (header("ascii", 1, 1) + b"0 0 " + b"0" * 9999 + b" 3 0 0 0 0", "is not a number"),
         (header("ascii", 1, 1) + b"0 0 0 2 0 0 0", "no faces of three corners"),
+        (SPLAT, "is a Gaussian splat"),
         (header("binary_little_endian", 10**12, 1) + b"0" * 99, "ends before its 1000000000000 vertex rows do"),
         (header("binary_big_endian", 0, 10**9) + b"\xff" * 200, "ends before its 1000000000 face rows do"),
         (pyramid("binary_little_endian")[:-1], "ends before its 5 face rows do"),
