@@ -133,7 +133,7 @@ def _bulk_ends(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArr
     middles = corners.mean(axis=1)
     order = np.argsort(middles, axis=0, kind="stable")
     sums = np.cumsum(area[order], axis=0) / area.sum()
-    tail = (1 - _NEARLY_ALL) / 6
+    tail = 1 - _NEARLY_ALL
     first, last = (sums <= tail).sum(axis=0), np.minimum((sums < 1 - tail).sum(axis=0), len(order) - 1)
     axes = np.arange(3)
     low, high = middles[order[first, axes], axes], middles[order[last, axes], axes]

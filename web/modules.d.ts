@@ -9,6 +9,7 @@ declare module "*/loaders/PLYLoader.js" { export * from "three/addons/loaders/PL
 declare module "*/loaders/STLLoader.js" { export * from "three/addons/loaders/STLLoader.js"; }
 declare module "*/loaders/USDLoader.js" { export * from "three/addons/loaders/USDLoader.js"; }
 declare module "*/voxrt/hardware.js" { export * from "voxrt/hardware.js"; }
+declare module "*/voxrt/opacity.js" { export * from "voxrt/opacity.js"; }
 declare module "*/voxrt/scene.js" { export * from "voxrt/scene.js"; }
 declare module "*/voxrt/voxrt.js" { export * from "voxrt/voxrt.js"; }
 declare module "*/voxrt/warnings.js" { export * from "voxrt/warnings.js"; }

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import struct
+import zipfile
 import zlib
 from dataclasses import dataclass
 from pathlib import Path
@@ -71,6 +72,15 @@ def _as(name: str) -> Callable[[Path, bytes], Path]:
         path = folder / name
         path.write_bytes(data)
         return path
+
+    return write
+
+
+def _zipped(name: str, part: str) -> Callable[[Path, bytes], Path]:
+    def write(folder: Path, data: bytes) -> Path:
+        with zipfile.ZipFile(folder / name, "w") as archive:
+            archive.writestr(part, data)
+        return folder / name
 
     return write
 
@@ -275,6 +285,26 @@ def _seeds_of_rich() -> tuple[bytes, bytes]:
     return text + _BETWEEN + bytes(made.data), glb_of(text, made.data)
 
 
+_OFF = b"OFF\n# four corners\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n1 1 1\n3 0 1 2\n3 1 3 2\n"
+_3MF = b"""<model unit="inch" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">
+<resources><basematerials id="5"><base name="red" displaycolor="#FF0000"/></basematerials>
+<object id="1" name="part" pid="5" pindex="0"><mesh><vertices><vertex x="0" y="0" z="0"/><vertex x="1" y="0" z="0"/>
+<vertex x="0" y="1" z="0"/></vertices><triangles><triangle v1="0" v2="1" v3="2" p1="0"/></triangles></mesh></object>
+<object id="2"><components><component objectid="1" transform="1 0 0 0 1 0 0 0 1 5 0 0"/></components></object>
+</resources><build><item objectid="2"/></build></model>"""
+_DAE = b"""<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit name="cm" meter="0.01"/><up_axis>Z_UP</up_axis></asset>
+<library_geometries><geometry id="g"><mesh><source id="p">
+<float_array id="a" count="9">0 0 0 1 0 0 0 1 0</float_array>
+<technique_common><accessor source="#a" count="3" stride="3"><param name="X" type="float"/>
+<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles></mesh></geometry>
+</library_geometries>
+<library_visual_scenes><visual_scene id="s"><node id="n"><translate>1 2 3</translate>
+<instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>"""
+
 _COE = b"memory_initialization_radix=16;memory_initialization_vector=" + b",".join(_mem_seeds()[0].split()) + b";"
 _MIF = b"""DEPTH=9; WIDTH=32; ADDRESS_RADIX=HEX; DATA_RADIX=HEX;
 CONTENT BEGIN
@@ -292,6 +322,10 @@ READERS = {
     "obj": Reader(_pair("a.obj", "a.mtl"), _read_scene, (_OBJ + _BETWEEN + _MTL,), _OBJ_WORDS, (".obj",)),
     "stl": Reader(_as("a.stl"), _read_scene, (_STL_TEXT, _STL), (b"solid", b"facet", b"vertex", b"1e999"), (".stl",)),
     "ply": Reader(_as("a.ply"), _read_scene, (_PLY_TEXT, _PLY), _PLY_WORDS, (".ply",)),
+    "off": Reader(_as("a.off"), _read_scene, (_OFF,), (b"COFF", b"#", b"1e999", b"-1")),
+    "3mf": Reader(_zipped("a.3mf", "3D/3dmodel.model"), _read_scene, (_3MF,), (b"pid=", b"p1=", b"path=", b"<base")),
+    "dae": Reader(_as("a.dae"), _read_scene, (_DAE,), (b"polylist", b"vcount", b"matrix", b"&x;", b"1e999")),
+    "vox-scene": Reader(_as("a.vox"), _read_scene, (_vox_seed(),), (b"SIZE", b"XYZI", b"PACK", b"nTRN", b"nSHP")),
     "toml": Reader(
         _as("a.toml"),
         _read_scene,

@@ -130,11 +130,12 @@ def test_meshopt_streams_of_version_1():
 
 
 def test_a_memory_without_voxels_is_an_error(tmp_path):
-    path = written(tmp_path, TRIANGLE + "v 1e30 0 0\nf 1 2 4\n", "a.obj")
+    path, beside = written(tmp_path, TRIANGLE, "a.obj"), (5, 5, 5, 6, 6, 6)
     with pytest.raises(DoesNotFitError, match="the memory is empty"):
-        voxrt.build(path, depth=4)
-    assert voxrt.build(path, depth=4, allow_empty=True).solid_voxels == 0
-    command = [sys.executable, "-m", "voxrt", "build", path, "-o", tmp_path / "out", "--depth", "4"]
+        voxrt.build(path, depth=4, bounds=beside)
+    assert voxrt.build(path, depth=4, bounds=beside, allow_empty=True).solid_voxels == 0
+    bounds = "--bounds=" + ",".join(map(str, beside))
+    command = [sys.executable, "-m", "voxrt", "build", path, "-o", tmp_path / "out", "--depth", "4", bounds]
     found = subprocess.run(command, capture_output=True, text=True, check=False)
     assert (found.returncode, found.stderr.count("\n")) == (4, 1)
     assert not list((tmp_path / "out").glob("*.mem"))

@@ -17,6 +17,7 @@ from PIL import Image
 
 import voxrt
 from voxrt.voxelize.formats.image_file import decode_image
+from voxrt.voxelize.warning_log import WarningLog
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -187,7 +188,7 @@ def test_png_files_are_decoded_as_natively(tmp_path: Path) -> None:
     paths = sorted(tmp_path.glob("*.png"))
     found = node("decode_images.mjs", [str(path) for path in paths])
     for path, one in zip(paths, found, strict=True):
-        native = decode_image(path.read_bytes(), path, "image")
+        native = decode_image(path.read_bytes(), path, "image", WarningLog())
         assert one == {"size": [native.shape[1], native.shape[0]], "sha": sha(native)}, path
 
 

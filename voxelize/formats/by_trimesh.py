@@ -85,7 +85,7 @@ def load_dae(path: str | Path) -> Scene:
     up: UpAxis = "y"
     for element in _elements(path, data, "unit", "up_axis"):
         if element.tag.endswith("unit"):
-            unit = float(element.get("meter") or 1)
+            unit = _metres(path, element.get("meter") or "1")
         else:
             up = _UP_AXES.get((element.text or "").strip(), "y")
     scene = _loaded(path, data, "dae", resolver=import_module("trimesh.resolvers").FilePathResolver(str(path)))
@@ -137,6 +137,13 @@ def _need(path: Path, *modules: str) -> None:
             raise AssetError(path, f"takes the extra cad, of which {module} is missing", fix=fix) from None
 
 
+def _metres(path: Path, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise AssetError(path, f"has a unit of {text[:24]!r} metres", fix=_DAMAGED) from None
+
+
 def _loaded(path: Path, data: bytes, kind: str, **options: Any) -> Any:  # noqa: ANN401 - trimesh has no types
     import trimesh  # noqa: PLC0415 - it is slow to import
 
@@ -145,13 +152,14 @@ def _loaded(path: Path, data: bytes, kind: str, **options: Any) -> Any:  # noqa:
     except MemoryError:
         raise
     except Exception as error:  # noqa: BLE001 - it raises whatever its parsers do
-        what = " ".join(str(error).split())[:120] or type(error).__name__
-        raise AssetError(path, f"trimesh cannot read it ({what})", fix=_DAMAGED) from None
+        raise AssetError(path, f"trimesh cannot read it ({type(error).__name__})", fix=_DAMAGED) from None
 
 
 def _scene(path: Path, scene: Any, up: UpAxis | None, unit: float | None) -> Scene:  # noqa: ANN401 - trimesh has no types
     try:
         made = trimesh_scene(scene, name=asset_name(path), up=up, unit=unit)
+    except KeyError as error:
+        raise AssetError(path, f"shows {error}, which is not in it", fix=_DAMAGED) from None
     except (TypeError, ValueError) as error:
         raise AssetError(path, str(error), fix=_DAMAGED) from None
     if not any(len(one.mesh.triangles) for one in made.objects):
@@ -183,7 +191,7 @@ def _elements(path: Path, text: bytes, *tags: str, event: str = "end") -> Iterat
         ):
             yield element
     except etree.XMLSyntaxError as error:
-        raise AssetError(path, f"its XML is broken ({error.msg})", fix=_DAMAGED) from None
+        raise AssetError(path, f"its XML is broken ({' '.join(str(error.msg).split())})", fix=_DAMAGED) from None
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,17 +27,17 @@ export { colours } from "./three_looks.js";
  * boolean, authored?: boolean }} Described */
 
 /** How a file differs from a scene graph. `groupOf`: what makes meshes one object; `materialOf`: null for the
- * default material; `appearanceOf`: null where the colour of the material is uniform; `isLeftOut`: whether a
- * material is fully transparent; `normalsOf`: the author's normals, for baked light. @typedef {{ groupOf: (mesh:
+ * default material; `appearanceOf`: null where the colour of the material is uniform; `leavesOut`: why faces
+ * of a material are left out, or null; `normalsOf`: the author's normals, for baked light. @typedef {{ groupOf: (mesh:
  * ThreeMesh) => Object3D, nameOf: (mesh: ThreeMesh, group: Object3D) => string, materialOf: (material:
  * ThreeMaterial) => Described | null | undefined, appearanceOf: (material: ThreeMaterial, geometry: BufferGeometry,
- * warn: Warn) => Look | null, isLeftOut: (material: ThreeMaterial) => boolean, normalsOf: (mesh: ThreeMesh) =>
+ * warn: Warn) => Look | null, leavesOut: (material: ThreeMaterial) => string | null, normalsOf: (mesh: ThreeMesh) =>
  * Attribute | null }} Rules */
 
 /** @type {Rules} */ const PLAIN = {
   normalsOf: (mesh) => (isDeformed(mesh) ? null : (mesh.geometry.getAttribute("normal") ?? null)),
   appearanceOf: appearanceOfThree,
-  isLeftOut: () => false,
+  leavesOut: () => null,
   groupOf: (mesh) => mesh,
   nameOf: (mesh) => mesh.name || "mesh",
   materialOf: (material) => (material ? { key: material, name: material.name || "material" } : null),

@@ -28,8 +28,9 @@ export function joined(parts, rules, keyOf, warn) {
     for (const [start, end, material] of runsOf(mesh, corners.length, warn)) {
       if (end <= start) continue;
       const look = rules.appearanceOf(material, geometry, warn);
-      if (!look && rules.isLeftOut(material)) {
-        warn("transparent", "fully transparent faces were left out", (end - start) / 3);
+      const reason = look ? null : rules.leavesOut(material);
+      if (reason) {
+        warn("transparent", reason, (end - start) / 3);
         continue;
       }
       /** @type {unknown} */ let plain;

@@ -1,6 +1,7 @@
 // A scene as voxels in an octree memory.
 
 import { textBytes, VoxrtError } from "./instance.js";
+import { BELOW_THRESHOLD } from "./opacity.js";
 import { BAKED_COLOURS, COLOURS, DEPTH_LIMIT, FILLS, WRAPS } from "./scene_format.js";
 /** @import { Appearance, Baked, Built, Daylight, Fitted, Image, Options, Scene } from "./scene_format.js" */
 /** @import { Voxrt } from "./voxrt.js" */
@@ -21,7 +22,7 @@ export function voxelize(voxrt, scene, { depth = 7, fill = "auto", colours = COL
     const fitted = budget ? fit(voxrt, budget) : null;
     if (baked && fitted) baked.colours = fitted.colours;
     const built = { ...read(voxrt), depth, baked, fitted };
-    const left = { kind: "transparent", message: "fully transparent faces were left out", count: transparent };
+    const left = { kind: "transparent", message: BELOW_THRESHOLD, count: transparent };
     if (transparent) built.warnings.unshift(left);
     wasm.vx_scene_begin();
     return built;

@@ -1,6 +1,7 @@
 // Textures and vertex colours of glTF files: what voxrt build reads of them, by the file's own numbers.
 
 import { decodeImage } from "./images.js";
+import { leftOut, OPAQUE_FROM } from "./voxrt/opacity.js";
 import { colours } from "./voxrt/scene.js";
 import { Warnings } from "./voxrt/warnings.js";
 /** @import { BufferGeometry, Material, Object3D, Texture } from "three" */
@@ -18,7 +19,6 @@ import { Warnings } from "./voxrt/warnings.js";
 
 /** @type {Record<number, Wrap>} */ const WRAPS = { 10497: "repeat", 33648: "mirror", 33071: "clamp" };
 const NEAREST = 9728;
-const BLEND_CUTOFF = 0.5;
 const GLOSSY = "KHR_materials_pbrSpecularGlossiness";
 /** @type {Record<string, string>} */
 const UNREADABLE = { KHR_texture_basisu: "KTX2", MSFT_texture_dds: "DDS", EXT_texture_avif: "AVIF" };
@@ -97,27 +97,33 @@ export class GltfLooks {
     const material = this.#json.materials[index];
     const base = material.pbrMetallicRoughness ?? {};
     const glossy = material.extensions?.[GLOSSY];
-    /** @type {number[]} */ const factor = (glossy ? glossy.diffuseFactor : base.baseColorFactor) ?? [1, 1, 1, 1];
+    /** @type {number[]} */ let factor = (glossy ? glossy.diffuseFactor : base.baseColorFactor) ?? [1, 1, 1, 1];
+    let texture = glossy ? glossy.diffuseTexture : base.baseColorTexture;
+    /** @type {number[]} */ const emission = material.emissiveFactor ?? [0, 0, 0];
+    if (Math.max(...factor.slice(0, 3)) <= 0 && Math.max(...emission) > 0) {
+      factor = [...emission, factor[3]]; // it reflects nothing, and shows what it emits
+      texture = material.emissiveTexture;
+    }
     const extras = material.extras ?? {};
     /** @type {Record<string, number>} */ const cutoffs = {
       MASK: material.alphaCutoff ?? 0.5,
-      BLEND: BLEND_CUTOFF,
+      BLEND: OPAQUE_FROM,
       OPAQUE: 0,
     };
     return {
       name: extras.voxrt_material || material.name || `materials[${index}]`,
       factor: factor.map((part) => Math.min(Math.max(part, 0), 1)),
-      texture: glossy ? glossy.diffuseTexture : base.baseColorTexture,
+      texture,
       cutoff: cutoffs[material.alphaMode ?? "OPAQUE"] ?? 0,
       mirror: Boolean(extras.voxrt_reflect),
       isNamed: Boolean(extras.voxrt_material),
     };
   }
 
-  /** @param {number | undefined} index of a material */ isLeftOut(index) {
-    if (index === undefined) return false;
+  /** @param {number | undefined} index of a material */ leavesOut(index) {
+    if (index === undefined) return null;
     const { factor, cutoff } = this.properties(index);
-    return factor[3] < cutoff;
+    return leftOut(factor[3], cutoff);
   }
 
   /** The look of a primitive; null where its colour is uniform. @param {number | undefined} index @param

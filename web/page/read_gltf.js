@@ -42,7 +42,7 @@ import { sceneOf } from "./voxrt/scene.js";
       const colour = factor.slice(0, 3).map((channel) => voxrt.srgb(channel));
       return { key: isNamed ? `${name} ${mirror}` : index, order: index, name, mirror, colour };
     },
-    isLeftOut: (material) => looks.isLeftOut(place(material, "materials")),
+    leavesOut: (material) => looks.leavesOut(place(material, "materials")),
     appearanceOf: (material, geometry) => looks.appearance(place(material, "materials"), geometry),
   });
   scene.warnings.push(...looks.warnings.list());

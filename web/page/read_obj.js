@@ -5,6 +5,7 @@ import { decodeImage } from "./images.js";
 import { withoutConcave } from "./polygons.js";
 import { MTLLoader } from "./three/addons/loaders/MTLLoader.js";
 import { OBJLoader } from "./three/addons/loaders/OBJLoader.js";
+import { leftOut, OPAQUE_FROM } from "./voxrt/opacity.js";
 import { colours, sceneOf } from "./voxrt/scene.js";
 /** @import { MaterialInfo } from "three/addons/loaders/MTLLoader.js" @import { Reader } from "./files.js" */
 /** @import { Folder } from "./folder.js" @import { Attribute, Rules, Setter } from "./voxrt/scene.js" */
@@ -51,7 +52,6 @@ function textOf(bytes) {
 }
 
 /** @typedef {{ file: string, scale: number[], offset: number[], clamp: boolean }} Placed an image */
-const OPAQUE_FROM = 0.5;
 /** @type {Record<string, number>} */
 const VALUES = { "-s": 3, "-o": 3, "-t": 3, "-mm": 2 }; // the most numbers of an option; others have one word
 
@@ -87,9 +87,9 @@ async function objLooks(library, folder, voxrt) {
   return {
     warnings,
     rules: {
-      isLeftOut: ({ name }) => isClear(library.get(name)),
+      leavesOut: ({ name }) => leftOut(opacityOf(library.get(name)), OPAQUE_FROM),
       appearanceOf({ name }, geometry) {
-        if (isClear(library.get(name))) return null;
+        if (opacityOf(library.get(name)) < OPAQUE_FROM) return null;
         const [placed, textured] = [textures.get(name), entries.get(`${name} textured`)];
         const uv = geometry.getAttribute("uv");
         if (placed && textured && uv) return { entry: textured, uvOf: uvSetter(uv, placed) };
@@ -125,7 +125,7 @@ function code(part) {
 }
 
 /** @param {MaterialInfo | undefined} material */
-const isClear = (material) => Number(material?.d ?? (material?.tr === undefined ? 1 : 1 - material.tr)) < OPAQUE_FROM;
+const opacityOf = (material) => Number(material?.d ?? (material?.tr === undefined ? 1 : 1 - material.tr));
 
 /** The arguments of map_Kd: options, then the name of a file, which may have blanks. @param {string} text */
 function placement(text) {

@@ -278,7 +278,7 @@ EXPORT(vx_scene_end) double vx_scene_end() {
             if (mesh.materials.empty())
                 continue;
             mesh.used = voxelize::spanning_vertices<double>(mesh.triangles, mesh.positions);
-            voxelize::move_unused_vertices(mesh.positions, mesh.triangles);
+            voxelize::move_unused_vertices(mesh.positions, mesh.triangles, mesh.used);
         }
         std::erase_if(scene.objects, [](const Object& object) { return scene.meshes[object.mesh].materials.empty(); });
         return static_cast<double>(left_out);

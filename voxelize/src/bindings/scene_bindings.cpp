@@ -70,12 +70,12 @@ nb::object placed_vertices(const InputOf<double>& positions, const InputOf<int32
     check(triangles, positions.size() / 3);
     if (triangles.size() == 0)
         return nb::cast(positions);
-    const std::vector<uint8_t> used = used_vertices(span_of(triangles), positions.size() / 3);
-    if (std::all_of(used.begin(), used.end(), [](uint8_t one) { return one != 0; }))
+    const std::vector<uint8_t> spanning = spanning_vertices(span_of(triangles), span_of(positions));
+    if (std::all_of(spanning.begin(), spanning.end(), [](uint8_t one) { return one != 0; }))
         return nb::cast(positions);
     auto moved = std::make_unique<double[]>(positions.size());
     std::copy_n(positions.data(), positions.size(), moved.get());
-    move_unused_vertices({moved.get(), positions.size()}, span_of(triangles));
+    move_unused_vertices({moved.get(), positions.size()}, span_of(triangles), spanning);
     return python::to_numpy(std::move(moved), {positions.size() / 3, 3});
 }
 

@@ -52,13 +52,46 @@ std::vector<uint8_t> spanning_vertices(std::span<const int32_t> triangles, std::
     return any ? used : used_vertices(triangles, used.size());
 }
 
-/// Moves the vertices that no triangle uses to a used one. `positions`: 3 per vertex; `triangles` is not empty.
-inline void move_unused_vertices(std::span<double> positions, std::span<const int32_t> triangles) {
+/// Moves the vertices that no triangle uses to a used one, and those that only triangles without area use to another
+/// corner of such a triangle, where none of these gets an area by that. `spanning`: by spanning_vertices(). `positions`:
+/// 3 per vertex; `triangles` is not empty.
+inline void move_unused_vertices(std::span<double> positions, std::span<const int32_t> triangles,
+                                 const std::vector<uint8_t>& spanning) {
+    constexpr int32_t kUnmoved = -1;
     const std::vector<uint8_t> used = used_vertices(triangles, positions.size() / 3);
-    const double* place = positions.data() + 3 * static_cast<size_t>(triangles[0]);
+    std::vector<int32_t> places(used.size(), kUnmoved);
+    int32_t first = triangles[0];
+    for (size_t vertex = spanning.size(); vertex-- > 0;)
+        first = spanning[vertex] != 0 ? static_cast<int32_t>(vertex) : first;
     for (size_t vertex = 0; vertex < used.size(); ++vertex)
-        if (!used[vertex])
-            std::copy_n(place, 3, positions.data() + 3 * vertex);
+        if (used[vertex] == 0)
+            places[vertex] = first;
+    bool stays_flat = true;
+    const auto each_flat = [&](auto&& visit) {
+        for (size_t i = 0; i + 2 < triangles.size(); i += 3)
+            if (!(spanning[size_t(triangles[i])] && spanning[size_t(triangles[i + 1])] &&
+                  spanning[size_t(triangles[i + 2])]))
+                visit(triangles.subspan(i, 3));
+    };
+    each_flat([&](std::span<const int32_t> corners) {
+        int32_t place = first;
+        for (const int32_t corner : corners)
+            place = spanning[size_t(corner)] != 0 ? corner : place;
+        for (const int32_t corner : corners)
+            if (spanning[size_t(corner)] == 0 && places[size_t(corner)] == kUnmoved)
+                places[size_t(corner)] = place;
+    });
+    each_flat([&](std::span<const int32_t> corners) {
+        const double* at[3];
+        for (int i = 0; i < 3; ++i) {
+            const int32_t place = places[size_t(corners[size_t(i)])];
+            at[i] = positions.data() + 3 * size_t(place == kUnmoved ? corners[size_t(i)] : place);
+        }
+        stays_flat = stays_flat && has_no_area(at[0], at[1], at[2]);
+    });
+    for (size_t vertex = 0; vertex < used.size(); ++vertex)
+        if (places[vertex] != kUnmoved && (stays_flat || used[vertex] == 0))
+            std::copy_n(positions.data() + 3 * size_t(places[vertex]), 3, positions.data() + 3 * vertex);
 }
 
 } // namespace voxrt::voxelize

@@ -1,6 +1,7 @@
 // What each face of a prim of USD shows, as voxrt build reads it (voxelize/formats/usd/materials.py): the material bound to
 // it or to its subset, else its displayColor, else the default material.
 
+import { leftOut } from "../voxrt/opacity.js";
 import { coordinates } from "./images.js";
 import { noShading, readShading } from "./shading.js";
 import { attributeOf, boundMaterial, fieldsOf, isMaterial, numbersOf, primvarOf, targetsOf } from "./stage.js";
@@ -13,7 +14,6 @@ import { placesOf } from "./surface.js";
 /** @typedef {(triangle: number, corner: number, out: { [at: number]: number }, to: number) => void} SetCorner */
 /** @typedef {{ entry: Appearance, setUv?: SetCorner, setColour?: SetCorner }} CornerLook */
 const DEFAULT_COLOUR = [200, 200, 200];
-const TRANSPARENT = "faces of materials below their opacity threshold (0.5 by default) were left out";
 const MISSING = "textures that are missing or of an unsupported format were replaced by the fallback or default colour";
 const UNPLACED = "textured faces without texture coordinates took the texture's fallback or the default colour";
 const UNIFORM = "textured faces took one colour of their image: no texture coordinates are connected to it";
@@ -100,8 +100,9 @@ export class UsdMaterials {
   /** What faces of a shading show: null where they are left out. @param {Shading} shading @param {Composer} composer
    * @param {string} path @param {FaceSurface} surface @param {number} faces */
   show(shading, composer, path, surface, faces) {
-    if (!shading.alpha && shading.opacity < shading.cutoff) {
-      this.warn("transparent", TRANSPARENT, faces);
+    const reason = shading.alpha ? null : leftOut(shading.opacity, shading.cutoff);
+    if (reason) {
+      this.warn("transparent", reason, faces);
       return null;
     }
     const look =

@@ -1,5 +1,6 @@
 // The colour and opacity of USD materials, as voxrt build reads them (voxelize/formats/usd/shading.py).
 
+import { OPAQUE_FROM } from "../voxrt/opacity.js";
 import { attributeOf, fieldsOf, targetsOf } from "./stage.js";
 /** @import { Wrap } from "../voxrt/voxrt.js" @import { Warn } from "../voxrt/warnings.js" */
 /** @import { Numbers, Value } from "./stage.js" @import { Composer } from "./three_private.js" */
@@ -19,10 +20,10 @@ import { attributeOf, fieldsOf, targetsOf } from "./stage.js";
 /** @typedef {Omit<Shading, "id">} Unnumbered */
 /** @typedef {{ value?: number[] | null, image?: Texture, primvar?: string }} Input */
 /** @typedef {{ node: string, output: string, value?: undefined } | { node?: undefined, value: Value }} Producer */
-export const BLEND_CUTOFF = 0.5;
 const FALLBACK_DIFFUSE = [0.18, 0.18, 0.18]; // UsdPreviewSurface's own
 const COLOUR_INPUTS =
   "diffuseColor base_color baseColor diffuse_color_constant diffuse_reflection_color diffuse_color color".split(" ");
+const EMISSION_INPUTS = "emissiveColor emission_color emission emissive_color".split(" ");
 const CONTEXTS = ["", "mtlx:", "mdl:", "ri:", "glslfx:"];
 /** @type {Record<string, Wrap>} */
 const WRAPS = { repeat: "repeat", mirror: "mirror", clamp: "clamp", black: "clamp" };
@@ -31,7 +32,7 @@ const WRAPS = { repeat: "repeat", mirror: "mirror", clamp: "clamp", black: "clam
   name: null,
   colour: null,
   opacity: 1,
-  cutoff: BLEND_CUTOFF,
+  cutoff: OPAQUE_FROM,
   image: null,
   alpha: null,
   primvar: null,
@@ -47,7 +48,9 @@ export function readShading(composer, material, warn) {
     return plain;
   }
   /** @param {string[]} names */ const read = (names) => inputOf(composer, shader, names, warn);
-  const [threshold, opacity, colour] = [read(["opacityThreshold"]), read(["opacity"]), read(COLOUR_INPUTS)];
+  const [threshold, opacity, reflected] = [read(["opacityThreshold"]), read(["opacity"]), read(COLOUR_INPUTS)];
+  const emitted = isBlack(reflected) ? read(EMISSION_INPUTS) : null;
+  const colour = emitted && !isBlack(emitted) ? emitted : reflected; // what reflects nothing shows what it emits
   const isPreview = attributeOf(composer, shader, "info:id") === "UsdPreviewSurface";
   const bare = !colour || (!colour.value && !colour.image && !colour.primvar);
   if (!colour && !isPreview) warn("material-colour", "materials whose shader has no colour got the default colour");
@@ -55,12 +58,15 @@ export function readShading(composer, material, warn) {
     ...plain,
     colour: colour?.value ?? (bare && isPreview ? FALLBACK_DIFFUSE : null),
     opacity: opacity?.value ? opacity.value[0] : 1,
-    cutoff: threshold?.value?.[0] || BLEND_CUTOFF,
+    cutoff: threshold?.value?.[0] || OPAQUE_FROM,
     image: colour?.image ?? null,
     alpha: opacity?.image ?? null,
     primvar: colour?.primvar ?? null,
   };
 }
+
+/** Whether it is one colour that reflects nothing. @param {Input | null | undefined} input */
+const isBlack = (input) => Boolean(input?.value && !input.image && !input.primvar && Math.max(...input.value) <= 0);
 
 /** @param {Composer} composer @param {string} path */
 const isShader = (composer, path) => composer.specsByPath[path]?.fields.typeName === "Shader";
