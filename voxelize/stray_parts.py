@@ -55,7 +55,7 @@ def find_stray_parts(scene: Scene, geometry: Geometry) -> StrayParts | None:
     >>> scan = SceneObject("scan", Mesh(corners, [[0, 1, 2], [3, 4, 5]], [1, 1]))
     >>> found = find_stray_parts(Scene("hill", [scan], [EMPTY, Material("earth", (90, 80, 70))]), "auto")
     >>> found.names, found.high, found.place
-    (('scan',), (4.0, 4.0, 0.0), (900.0, 1.0, 0.1))
+    (('scan',), (4.0, 4.0, 0.0), (900.0, 0.0, 0.0))
     """
     shown = [item for item in scene.objects if not item.hidden]
     if any(proxies(item, geometry) is not None for item in shown):

@@ -8,7 +8,9 @@ from voxrt.voxelize import AssetError, load
 def test_unknown_suffix_is_refused_with_the_known_ones(tmp_path):
     path = tmp_path / "house.max"
     path.write_bytes(b"")
-    with pytest.raises(AssetError, match=r"house\.max: unknown kind of file '\.max'; use one of \.gltf, \.glb, "):
+    known = r"to one of \.gltf, \.glb, "
+    message = rf"house\.max: unknown kind of file '\.max'; convert it, by Blender or MeshLab for example, {known}"
+    with pytest.raises(AssetError, match=message):
         load(path)
 
 

@@ -3,7 +3,7 @@
 /** The default of voxrt build. */
 export const OPAQUE_FROM = 0.5;
 
-export const BELOW_THRESHOLD = "faces below the opacity threshold of their material were left out";
+const BELOW_THRESHOLD = "faces below the opacity threshold of their material were left out";
 
 /** Why faces are left out; null where they stay. @param {number} opacity the highest that they have @param {number}
  * cutoff what they need @returns {string | null} */

@@ -1,7 +1,7 @@
 // A scene as voxels in an octree memory.
 
 import { textBytes, VoxrtError } from "./instance.js";
-import { BELOW_THRESHOLD } from "./opacity.js";
+import { leftOut } from "./opacity.js";
 import { BAKED_COLOURS, COLOURS, DEPTH_LIMIT, FILLS, WRAPS } from "./scene_format.js";
 /** @import { Appearance, Baked, Built, Daylight, Fitted, Image, Options, Scene } from "./scene_format.js" */
 /** @import { Voxrt } from "./voxrt.js" */
@@ -22,14 +22,20 @@ export function voxelize(voxrt, scene, { depth = 7, fill = "auto", colours = COL
     const fitted = budget ? fit(voxrt, budget) : null;
     if (baked && fitted) baked.colours = fitted.colours;
     const built = { ...read(voxrt), depth, baked, fitted };
-    const left = { kind: "transparent", message: BELOW_THRESHOLD, count: transparent };
+    const left = { kind: "transparent", message: reasonOf(scene), count: transparent };
     if (transparent) built.warnings.unshift(left);
     wasm.vx_scene_begin();
     return built;
   });
 }
 
-/** Hand a scene to the module; returns how many triangles are fully transparent. @param {Voxrt} voxrt @param {Scene}
+/** Why faces of a scene are cut away. @param {Scene} scene */
+function reasonOf({ meshes }) {
+  const cutoffs = meshes.flatMap(({ surface }) => surface?.entries.map(({ cutoff }) => cutoff || 0) ?? []);
+  return leftOut(Number.MIN_VALUE, Math.max(...cutoffs)) ?? "";
+}
+
+/** Hand a scene to the module; returns how many triangles are cut away. @param {Voxrt} voxrt @param {Scene}
  * scene @param {boolean} hasNormals */
 function describe(voxrt, { materials, meshes, objects }, hasNormals) {
   const { wasm } = voxrt;

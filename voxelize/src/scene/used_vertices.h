@@ -52,9 +52,9 @@ std::vector<uint8_t> spanning_vertices(std::span<const int32_t> triangles, std::
     return any ? used : used_vertices(triangles, used.size());
 }
 
-/// Moves the vertices that no triangle uses to a used one, and those that only triangles without area use to another
-/// corner of such a triangle, where none of these gets an area by that. `spanning`: by spanning_vertices(). `positions`:
-/// 3 per vertex; `triangles` is not empty.
+/// Moves the vertices that no triangle uses to a used one. Those that only triangles without area use, and that are
+/// farther from all others than these are wide, move to another corner of such a triangle, where none of these gets an
+/// area by that. `spanning`: by spanning_vertices(). `positions`: 3 per vertex; `triangles` is not empty.
 inline void move_unused_vertices(std::span<double> positions, std::span<const int32_t> triangles,
                                  const std::vector<uint8_t>& spanning) {
     constexpr int32_t kUnmoved = -1;
@@ -66,6 +66,22 @@ inline void move_unused_vertices(std::span<double> positions, std::span<const in
     for (size_t vertex = 0; vertex < used.size(); ++vertex)
         if (used[vertex] == 0)
             places[vertex] = first;
+    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, width = 0;
+    for (size_t i = 0; i < positions.size(); ++i)
+        if (spanning[i / 3] != 0) {
+            low[i % 3] = std::min(low[i % 3], positions[i]);
+            high[i % 3] = std::max(high[i % 3], positions[i]);
+        }
+    for (int i = 0; i < 3; ++i)
+        width = std::max(width, high[i] - low[i]);
+    const auto is_far = [&](int32_t vertex) {
+        bool far = false;
+        for (int i = 0; i < 3; ++i) {
+            const double at = positions[3 * size_t(vertex) + size_t(i)];
+            far = far || at < low[i] - width || at > high[i] + width;
+        }
+        return far;
+    };
     bool stays_flat = true;
     const auto each_flat = [&](auto&& visit) {
         for (size_t i = 0; i + 2 < triangles.size(); i += 3)
@@ -78,7 +94,7 @@ inline void move_unused_vertices(std::span<double> positions, std::span<const in
         for (const int32_t corner : corners)
             place = spanning[size_t(corner)] != 0 ? corner : place;
         for (const int32_t corner : corners)
-            if (spanning[size_t(corner)] == 0 && places[size_t(corner)] == kUnmoved)
+            if (spanning[size_t(corner)] == 0 && places[size_t(corner)] == kUnmoved && is_far(corner))
                 places[size_t(corner)] = place;
     });
     each_flat([&](std::span<const int32_t> corners) {
