@@ -35,8 +35,8 @@ if TYPE_CHECKING:
 _DAMAGED = "check the file in another program, and export it again"
 _UNITS = {"micron": 1e-6, "millimeter": 1e-3, "centimeter": 1e-2, "inch": 0.0254, "foot": 0.3048, "meter": 1.0}
 _UP_AXES: dict[str, UpAxis] = {"X_UP": "x", "Y_UP": "y", "Z_UP": "z"}
-_LARGEST = 1 << 30
-"""Bytes that the parts of a 3MF file may unpack to."""
+_FREE_BYTES, _MOST_TIMES = 1 << 26, 64
+"""What the parts of a 3MF file may unpack to: so many bytes, and so many times its size more."""
 
 _STEP_SECONDS = 600
 _CONVERT_STEP = "import sys, cascadio; sys.exit(cascadio.step_to_glb(sys.argv[1], sys.argv[2]) or 0)"
@@ -171,8 +171,10 @@ def _model_of(path: Path, data: bytes) -> bytes:
     """Return the part of a 3MF file that has its objects."""
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            if sum(one.file_size for one in archive.infolist()) > _LARGEST:
-                raise AssetError(path, "unpacks to more than 1 GiB", fix="split it")
+            allowed = _FREE_BYTES + _MOST_TIMES * len(data)
+            if sum(one.file_size for one in archive.infolist()) > allowed:
+                problem = f"unpacks to more than {allowed >> 20} MiB, which is too much for its size"
+                raise AssetError(path, problem, fix="it is made to do harm, or must be packed anew")
             names = [name for name in archive.namelist() if "3d/3dmodel.model" in name.lower()]
             return archive.read(names[0])
     except (zipfile.BadZipFile, IndexError, OSError, NotImplementedError, RuntimeError, EOFError, ValueError) as error:

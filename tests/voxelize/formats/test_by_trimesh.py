@@ -200,3 +200,10 @@ def test_a_3mf_without_objects_or_with_another_unit_is_refused(tmp_path):
     zipfile.ZipFile(tmp_path / "b.3mf", "w").close()
     with pytest.raises(AssetError, match="is no 3MF package"):
         load(tmp_path / "b.3mf")
+
+
+def test_a_3mf_that_unpacks_to_far_more_than_its_size_is_refused(tmp_path):
+    with zipfile.ZipFile(tmp_path / "a.3mf", "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("3D/3dmodel.model", " " * (80 << 20))
+    with pytest.raises(AssetError, match="unpacks to more than 68 MiB"):
+        load(tmp_path / "a.3mf")
