@@ -36,7 +36,7 @@ _LOADERS = {
     ".stl": ("voxrt.voxelize.formats.stl.load", "load_stl", {"up", "unit"}),
     ".off": ("voxrt.voxelize.formats.by_trimesh", "load_off", {"up", "unit"}),
     ".3mf": ("voxrt.voxelize.formats.by_trimesh", "load_3mf", set()),
-    ".dae": ("voxrt.voxelize.formats.by_trimesh", "load_dae", set()),
+    ".dae": ("voxrt.voxelize.formats.by_trimesh", "load_dae", {"allow_outside"}),
     ".step": ("voxrt.voxelize.formats.by_trimesh", "load_step", {"opaque_from"}),
     ".stp": ("voxrt.voxelize.formats.by_trimesh", "load_step", {"opaque_from"}),
     ".vox": ("voxrt.voxelize.formats.vox.scene", "load_vox_scene", {"unit", "time"}),

@@ -19,10 +19,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.formats.external_files import asset_name, read_asset
+from voxrt.voxelize.formats.external_files import ExternalFiles, asset_name, read_asset
+from voxrt.voxelize.formats.image_file import INSTEAD, decode_image
 from voxrt.voxelize.formats.opacity import OPAQUE_FROM
 from voxrt.voxelize.formats.scene_frame import scene_transform
 from voxrt.voxelize.from_trimesh import trimesh_scene
+from voxrt.voxelize.warning_log import WarningLog
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -73,10 +75,11 @@ def load_3mf(path: str | Path) -> Scene:
     return _scene(path, scene, "z", _UNITS[unit or "millimeter"])
 
 
-def load_dae(path: str | Path) -> Scene:
+def load_dae(path: str | Path, *, allow_outside: bool = False) -> Scene:
     """Read a COLLADA file: an object per geometry and node, with the colours and textures of its materials.
 
-    AssetError where it cannot be read, or the extra ``cad`` is not installed.
+    `allow_outside`: whether textures may stand outside the file's folder. AssetError where it cannot be read, or
+    the extra ``cad`` is not installed.
     """
     path = Path(path)
     _need(path, "lxml", "collada")
@@ -88,7 +91,8 @@ def load_dae(path: str | Path) -> Scene:
             unit = _metres(path, element.get("meter") or "1")
         else:
             up = _UP_AXES.get((element.text or "").strip(), "y")
-    scene = _loaded(path, data, "dae", resolver=import_module("trimesh.resolvers").FilePathResolver(str(path)))
+    textures = _Textures(path, ExternalFiles.of(path, allow_outside=allow_outside), WarningLog())
+    scene = _loaded(path, data, "dae", resolver=textures)
     for geometry in scene.geometry.values():
         material = getattr(geometry.visual, "material", None)
         factor = getattr(material, "baseColorFactor", None)
@@ -97,7 +101,26 @@ def load_dae(path: str | Path) -> Scene:
             geometry.visual.material = import_module("trimesh.visual.material").SimpleMaterial(
                 diffuse=np.asarray(factor, np.uint8), name=material.name
             )
-    return _scene(path, scene, up, unit)
+    made = _scene(path, scene, up, unit)
+    return replace(made, warnings=made.warnings + textures.log.warnings())
+
+
+@dataclass(frozen=True, slots=True)
+class _Textures:
+    """What trimesh asks for the textures of a file: those that may not be opened, or cannot be read, are warnings."""
+
+    path: Path
+    external_files: ExternalFiles
+    log: WarningLog
+
+    def get(self, name: str) -> bytes:
+        """Return the bytes of an image; KeyError where there is none."""
+        files = self.external_files
+        found = files.reported(files.find_exported(name), "texture", name, self.log, instead=INSTEAD)
+        data = b"" if found is None else read_asset(found)
+        if not data or decode_image(data, self.path, f"texture {name}", self.log) is None:
+            raise KeyError(name)
+        return data
 
 
 def load_step(path: str | Path, *, opaque_from: float = OPAQUE_FROM) -> Scene:

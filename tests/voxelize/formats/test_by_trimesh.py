@@ -1,5 +1,6 @@
 """OFF, 3MF, COLLADA and STEP: units, axes, colours and components as the file says."""
 
+import re
 import zipfile
 from itertools import product
 
@@ -7,6 +8,7 @@ import numpy as np
 import pytest
 import trimesh
 from oracles.sound_scenes import kinds
+from PIL import Image
 
 import voxrt
 from voxrt.voxelize import AssetError, load
@@ -79,6 +81,42 @@ def test_collada_has_a_unit_an_up_axis_and_colours(tmp_path):
         scene = load(path)
         np.testing.assert_allclose(bounds(scene)[0], low)
         assert [one.colour for one in scene.materials[1:]] == [(200, 30, 30)]
+
+
+def test_textures_of_collada_are_opened_as_those_of_other_formats(tmp_path):
+    inner = tmp_path / "inner"
+    inner.mkdir()
+    image = Image.new("RGB", (2, 2), (0, 0, 255))
+    image.save(tmp_path / "outside.png")
+    image.save(inner / "map.png")
+    (inner / "broken.png").write_bytes(b"none")
+    box = BOX.copy()
+    box.visual = trimesh.visual.TextureVisuals(uv=np.zeros((8, 2)), image=image)
+    text = box.export(file_type="dae").decode()
+    path = inner / "a.dae"
+    for name, allowed, warned in (
+        ("map.png", False, {}),
+        ("../outside.png", False, {"outside": 1}),
+        ("../outside.png", True, {}),
+        ("broken.png", False, {"texture": 1}),
+        ("gone.png", False, {"missing-texture": 1}),
+    ):
+        path.write_text(with_texture(text, name))
+        scene = load(path, allow_outside=allowed)
+        assert kinds(scene) == warned, name
+        assert (scene.materials[1].colour == (0, 0, 255)) == (not warned), name
+
+
+def with_texture(text, name):
+    """Return a COLLADA file whose only effect has an image."""
+    image = f'<library_images><image id="i" name="i"><init_from>{name}</init_from></image></library_images>'
+    surface = '<newparam sid="s"><surface type="2D"><init_from>i</init_from></surface></newparam>'
+    sampler = '<newparam sid="t"><sampler2D><source>s</source></sampler2D></newparam>'
+    text = re.sub(
+        r"<diffuse>.*?</diffuse>", '<diffuse><texture texture="t" texcoord="UV"/></diffuse>', text, flags=re.DOTALL
+    )
+    text = text.replace("<library_effects>", image + "<library_effects>", 1)
+    return re.sub(r"<profile_COMMON>", f"<profile_COMMON>{surface}{sampler}", text, count=1)
 
 
 def test_off_is_read_as_the_user_says(tmp_path):

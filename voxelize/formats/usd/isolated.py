@@ -90,7 +90,7 @@ def read_isolated(
     DoesNotFitError
         More than 255 materials or a million objects.
     """
-    _refuse_pointer(path)
+    _refuse_unopenable(path)
     limits = Limits.of_this_machine() if limits is None else limits
     request = Request(
         parent=os.getpid(),
@@ -132,7 +132,11 @@ def read_isolated(
     raise _error(path, found, limits)
 
 
-def _refuse_pointer(path: Path) -> None:
+def _refuse_unopenable(path: Path) -> None:
+    try:
+        str(path).encode()
+    except UnicodeEncodeError:
+        raise AssetError(path, "its path is not UTF-8, and usd-core opens no such file", fix="rename it") from None
     try:
         with path.open("rb") as file:
             refuse_pointer(path, file.read(len(LFS_POINTER)))
