@@ -177,6 +177,7 @@ nb::object render_frame(const OwnedMemory& memory, const Palette& materials, con
     try {
         const LongCall call;
         const FrameLimit limit(seconds, stop);
+        voxrt::voxelize::WorkCounter::current().check(); // a small frame may end before its work calls it
         words_read = render(memory.verified(), shading, lod, camera,
                             {width, height, colour.get(), material.get(), face.get()}, threads, engine->render_tile);
     } catch (const FrameEnded& ended) {
