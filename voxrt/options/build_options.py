@@ -107,6 +107,9 @@ class BuildOptions:
         "Surfaces of lower opacity are left out, 0 to 1. The default is 0.5.",
         details="The alpha cutoff or opacity threshold that an author gave a material decides in its place.",
         is_rare=True, manifest="changed")
+    points: int | None = option(whole(1, 1 << 31), None, CONTENT,
+        "How many points of a point cloud make a voxel solid (PLY, XYZ, LAS). The default is 1.",
+        is_rare=True, manifest="changed")
     colours: int = option(whole(1, 254, "K"), 32, COLOUR,
         "The largest number of materials made of textures and vertex colours, 1 to 254.",
         details="Materials of one colour are not counted and keep their colour.", manifest="always")
