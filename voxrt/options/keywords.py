@@ -29,6 +29,7 @@ class BuildKeywords(TypedDict, total=False):
     animation: str | None
     variants: Sequence[str]
     opaque_from: float | None
+    points: int | None
     colours: int
     bake: bool
     sun: tuple[float, float, float]

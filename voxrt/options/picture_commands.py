@@ -55,7 +55,8 @@ class RenderCommand:
         metavar="K", is_rare=True)
     sight: CameraOptions = nested(CameraOptions)
     lighting: LightOptions = nested(LightOptions)
-    engine: Engine = ENGINE.field()
+    engine: Engine | None = ENGINE.field(
+        details="The default is rtl where {config}, {check}, {latency}, {interval} or {jitter} is given, else model.")
     config: str | None = CONFIG.field(
         help="The configuration of the hardware. The default is tiny, or lit for light or mirrors, or cached1 for "
         "{lod}.",
@@ -97,11 +98,13 @@ class CompareCommand:
     rom: Path = option(file("ROM"), MISSING, ARGUMENTS, "A .mem file with its manifest.")
     asset: Path = option(file("ASSET"), MISSING, ARGUMENTS, "What it was built from.")
     output: Path | None = option(notations.PICTURE, None, OUTPUT,
-        "A .png of four pictures side by side: the meshes, the memory by the simulated hardware and by the exact "
-        "model, and the difference.", flags=("--output", "-o"))
+        "A .png of pictures side by side: the meshes, the memory by the exact model and, with {check}, by the "
+        "simulated hardware, and the difference.", flags=("--output", "-o"))
     curve: Path | None = option(notations.PICTURE, None, OUTPUT,
         "A .png that plots the similarity against depth and words. The asset is built at each depth up to the "
         "memory's.")
+    check: bool = option(FLAG, False, HARDWARE,
+        "Render with the simulated hardware, too, and count the pixels that differ from the exact model.")
     size: tuple[int, int] = SIZE.field()
     allow_outside: bool = ALLOW_OUTSIDE.field()
     reporting: ReportOptions = nested(ReportOptions)

@@ -17,7 +17,7 @@ _SECONDS_PER_TRIANGLE = 1e-6
 _SECONDS_PER_SURFACE_VOXEL = 60e-9
 _SECONDS_PER_COLOURED_VOXEL = 100e-9
 _SECONDS_PER_BAKED_VOXEL_AND_SAMPLE = 40e-9
-_SECONDS_PER_HARDWARE_RAY = 4e-6
+_SECONDS_PER_HARDWARE_RAY = 6e-6
 _TRIANGLES_PER_POINT = 0.5  # a voxel of four triangles holds several points
 _BYTES_AT_START = 60 << 20
 _BYTES_PER_TRIANGLE = 200
@@ -92,13 +92,23 @@ def estimate_build(scene: Scene, grid: Grid, options: BuildOptions) -> BuildEsti
     if options.bake:
         seconds += surface * options.bake_samples * _SECONDS_PER_BAKED_VOXEL_AND_SAMPLE
     if options.preview and options.engine == "rtl":
-        rays = options.size[0] * options.size[1] * options.samples**2
-        seconds += rays * _SECONDS_PER_HARDWARE_RAY
+        seconds += hardware_seconds(options.size, options.samples or 1)
     least = _BYTES_AT_START + int(triangles * _BYTES_PER_TRIANGLE)
     taken = least + surface * _BYTES_PER_SURFACE_VOXEL + coloured * _BYTES_PER_COLOURED_VOXEL
     ends = np.clip((np.stack([low, high]) - grid.origin) / grid.voxel_size, 0, grid.size)[:, :2]
     width = int(np.ceil(max(0.0, float((ends[1] - ends[0]).max()))))
     return BuildEstimate(seconds, int(taken), surface=int(surface), least=least, width=width)
+
+
+def hardware_seconds(size: tuple[int, int], samples: int = 1) -> float:
+    """Estimate the seconds that the simulated hardware takes for a picture.
+
+    Examples
+    --------
+    >>> hardware_seconds((640, 480)) < 5
+    True
+    """
+    return size[0] * size[1] * samples**2 * _SECONDS_PER_HARDWARE_RAY
 
 
 def _largest_projections(ab: NDArray[np.float64], ac: NDArray[np.float64]) -> NDArray[np.float64]:

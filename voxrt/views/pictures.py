@@ -48,7 +48,7 @@ class Picture:
     >>> import voxrt
     >>> built = voxrt.build("examples/house.obj", depth=4)
     >>> camera = voxrt.aim_camera(built.rom, (64, 48))
-    >>> frame = voxrt.render(built.rom, camera, size=(64, 48), engine="model")
+    >>> frame = voxrt.render(built.rom, camera, size=(64, 48))
     >>> voxrt.Picture(frame, camera, "model").frame.colour.shape
     (48, 64, 3)
     """
@@ -91,13 +91,15 @@ def render(
     --------
     >>> import voxrt
     >>> rom = voxrt.build("examples/house.obj", depth=5).rom
-    >>> frame = voxrt.render(rom, size=(64, 48), engine="model")
+    >>> frame = voxrt.render(rom, size=(64, 48))
     >>> frame.colour.shape
     (48, 64, 3)
     """
     rom = instance("rom", rom, Rom)
     options = merge("render", RenderOptions, options, keywords)
-    return sim.render(rom, camera or aim_camera(rom, options.size), engine=options.engine, **options.for_engines())
+    return sim.render(
+        rom, camera or aim_camera(rom, options.size), engine=options.chosen_engine, **options.for_engines()
+    )
 
 
 def animation_camera(blob: Blob, size: tuple[int, int]) -> Camera:

@@ -34,20 +34,21 @@ def run(command: RenderCommand) -> None:
     camera = source.camera(command.size, command.sight)
     memory = _with_means(blob) if command.lod else source.rom
     options = _options(command, merge_lighting(blob.lighting, command.lighting))
+    engine = options.chosen_engine
     if command.cameras is not None:
         _take_path(command, memory, options, file, roots[0])
         return
     wrong_pixels = None
     if command.check:
         checked = voxrt.check(memory, camera, **replace(options, root=roots[0]).for_engines())
-        frame, wrong_pixels = getattr(checked, command.engine), checked.wrong_pixels
+        frame, wrong_pixels = getattr(checked, engine), checked.wrong_pixels
         voxrt.save_picture(frame.colour, file)
     else:
         frame = _save([voxrt.render(memory, camera, options, root=root) for root in roots], file, blob.animation)
     if command.reporting.json:
-        print_json(render_result(voxrt.Picture(frame, camera, command.engine), file, wrong_pixels))
+        print_json(render_result(voxrt.Picture(frame, camera, engine), file, wrong_pixels))
     else:
-        rows = [("picture", picture_cost(frame, command.engine))]
+        rows = [("picture", picture_cost(frame, engine))]
         if frame.cost.cache is not None:
             rows.append(("caches", cache_cost(frame.cost.cache, frame.cost.rays)))
         if len(roots) > 1:
@@ -68,21 +69,24 @@ def _options(command: RenderCommand, lighting: Lighting) -> RenderOptions:
         if command.lighting.light is not None or command.lighting.bounces:
             raise UsageError("--lod does not go with --light or --bounces; leave them or --lod out")
         lighting = _unlit(lighting, "--lod goes without light and mirrors")
+    dram = _dram(command)
+    is_hardware = command.check or dram is not None or command.config is not None
+    engine = command.engine or ("rtl" if is_hardware else "model")
     config = command.config or ("cached1" if command.lod else "lit" if lighting.features else "tiny")
     if (
-        command.engine == "rtl"
+        engine == "rtl"
         and not (command.config is None or command.lod or is_lit)
         and (lighting.features - voxrt.shader_features(config))
     ):
         lighting = _unlit(lighting, f"{config} has none, --config lit does")
     return RenderOptions(
         size=command.size,
-        engine=command.engine,
+        engine=engine,
         config=config,
         lighting=lighting,
         samples=command.samples,
         background=command.background,
-        dram=_dram(command),
+        dram=dram,
         lod=(1.0 if command.lod_cell is None else command.lod_cell) if command.lod else 0.0,
     )
 
@@ -143,7 +147,7 @@ def _take_path(command: RenderCommand, memory: Rom, options: RenderOptions, file
         target = file.with_stem(f"{file.stem}-{picture.number:04d}")
         voxrt.save_picture(picture.frame.colour, target)
         wrong += picture.wrong_pixels or 0
-        view = voxrt.Picture(picture.frame, path[picture.number], command.engine)
+        view = voxrt.Picture(picture.frame, path[picture.number], options.chosen_engine)
         results.append(render_result(view, target, picture.wrong_pixels))
     if command.reporting.json:
         print_json(results)
