@@ -48,9 +48,7 @@ def test_a_voxel_size_instead_of_a_depth(voxrt, folder):
 
 
 def test_json_is_all_that_stdout_gets_and_keeps_its_promise(process, folder):
-    finished = process.succeeds(
-        "build", "house.obj", "-o", "out", "--depth", "5", "--preview", "--no-check", "--json"
-    )
+    finished = process.succeeds("build", "house.obj", "-o", "out", "--depth", "5", "--preview", "--no-check", "--json")
     report = msgspec.json.decode(finished.out, type=BuildReport, strict=True)
     result = json.loads(finished.out)
     keys = {"outputs", "depth", "words", "blocks", "voxels", "materials", "warnings", "seconds", "render"}

@@ -106,8 +106,8 @@ def test_the_ray_tracer_counts_its_clocks(voxrt, built):
     assert (built / "house.png").read_bytes() == hardware
 
 
-@pytest.mark.usefixtures("ray_tracer")
-def test_a_preview_is_checked_where_that_is_quick(voxrt, folder):
+@pytest.mark.usefixtures("ray_tracer", "folder")
+def test_a_preview_is_checked_where_that_is_quick(voxrt):
     build = ("build", "house.obj", "--depth", "4", "--preview", "--size", "64x48")
     checked = voxrt.json(*build)["check"]
     assert (checked["pixels"], checked["wrong_pixels"]) == (64 * 48, 0)
