@@ -142,6 +142,30 @@ def test_check_fails_where_the_engines_differ(voxrt, monkeypatch):
     assert "1 pixels differ" in finished.error
 
 
+@pytest.mark.usefixtures("built")
+def test_a_turntable_comes_around(voxrt, folder):
+    for suffix in ("gif", "webp"):
+        voxrt.succeeds("render", "house.mem", "--turntable", "--size", "48x36", "-o", f"turn.{suffix}")
+        with Image.open(folder / f"turn.{suffix}") as film:
+            assert (film.n_frames, film.size, film.info["loop"]) == (72, (48, 36), 0)
+            shown = []
+            for number in (0, 1, 18, 71):
+                film.seek(number)
+                shown.append(np.asarray(film.convert("RGB"), int))
+        near = [np.abs(shown[0] - one).mean() for one in (shown[1], shown[3])]
+        assert 0 < max(near) < np.abs(shown[0] - shown[2]).mean()
+    for options in (("--check",), ("--look", "0,0,-1"), ("-o", "turn.png"), ("--background", "transparent")):
+        voxrt.fails(
+            2,
+            "turntable" if options[0] != "--background" else "transparent",
+            "render",
+            "house.mem",
+            "--turntable",
+            *options,
+        )
+    voxrt.fails(2, "or give --turntable", "render", "house.mem", "-o", "turn.webp")
+
+
 def test_light_bounces_and_shading(voxrt, built):
     pictures = []
     for options in (
