@@ -44,6 +44,7 @@ if TYPE_CHECKING:
 _CHILD = "voxrt.voxelize.formats.usd.child"
 # Each thread takes memory of its own, whatever it does.
 _ENVIRONMENT = {"PXR_WORK_THREAD_LIMIT": "4", "MALLOC_ARENA_MAX": "2", "OPENBLAS_NUM_THREADS": "1"}
+_SEARCH_PATH = "PXR_AR_DEFAULT_SEARCH_PATH"  # folders in which usd-core looks for layers
 _REPAIR = "it is damaged, or made to do harm: repair it or export it again"
 
 
@@ -102,15 +103,18 @@ def read_isolated(
         most_memory=limits.most_memory,
         seconds=limits.seconds,
     )
+    environment = os.environ | _ENVIRONMENT
+    if not allow_outside:
+        environment.pop(_SEARCH_PATH, None)
     # usd-core leaves notes about its crashes in the temporary folder: it gets one that is removed.
     with tempfile.TemporaryDirectory(prefix="voxrt-usd-") as folder, tempfile.TemporaryFile() as printed:
         child = subprocess.Popen(  # noqa: S603 - our own module; the file's name is one argument
             # -P: the folder that the user works in may hold a hostile numpy.py.
-            [sys.executable, "-P", "-m", _CHILD, path, msgspec.json.encode(request)],
+            [sys.executable, "-P", "-m", _CHILD, path.absolute(), msgspec.json.encode(request)],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=printed,
-            env=os.environ | {"TMPDIR": folder, **_ENVIRONMENT},
+            env=environment | {"TMPDIR": folder},
         )
         assert child.stdout is not None
         try:
