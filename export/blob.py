@@ -21,6 +21,7 @@ from voxrt.export.provenance import Provenance
 from voxrt.export.word_file import mapped_bytes
 from voxrt.octree import Animation, AnimationFrame, Rom, RomError, census, check_roots, decode, frame_octree
 from voxrt.octree.camera import BOUNCE_LIMIT, FACES, Camera, Faces, Lighting
+from voxrt.octree.rom import MOST_NAME
 from voxrt.voxelize import Grid, Material
 
 if TYPE_CHECKING:
@@ -184,6 +185,8 @@ def read_blob(path: Path) -> Blob:
         raise _damaged(
             path, "section NAME, WRLD, VIEW, LITE or FACE", "has another layout than that of version 1"
         ) from None
+    if len(title) > MOST_NAME:
+        raise _damaged(path, "section NAME", f"{len(title)} characters are no name; it may have {MOST_NAME}")
     words = sections[b"WORD"]
     if len(words) % 4:
         raise _damaged(path, "section WORD", f"{len(words)} bytes are not words of 4")
@@ -232,8 +235,13 @@ def _damaged(path: Path, place: str, problem: str) -> RomError:
     return RomError(f"{path}: {place}: {problem}; write the blob again")
 
 
+def _cut(name: str) -> bytes:
+    """Return as much of a name as its length of 16 bits can say."""
+    return name.encode()[:0xFFFF].decode(errors="ignore").encode()
+
+
 def _pack_material(material: Material) -> bytes:
-    name = material.name.encode()[:0xFFFF]
+    name = _cut(material.name)
     flags = material.mirror * _MIRROR | material.authored * _AUTHORED
     return _MATERIAL.pack(*material.colour, flags, len(name)) + name + bytes(-len(name) % 8)
 
@@ -257,7 +265,7 @@ def _materials(path: Path, section: bytes) -> tuple[Material, ...]:
 
 
 def _pack_frame(frame: AnimationFrame) -> bytes:
-    name = frame.name.encode()[:0xFFFF]
+    name = _cut(frame.name)
     time = math.nan if frame.time is None else frame.time
     return _FRAME.pack(frame.root, frame.words, time, len(name)) + name + bytes(-len(name) % 8)
 

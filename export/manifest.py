@@ -15,6 +15,7 @@ from voxrt.export.atomic import write_atomically
 from voxrt.export.provenance import BakedLight, Provenance, Source
 from voxrt.octree import Animation, Dialect, RomError, census
 from voxrt.octree.camera import Camera, Lighting  # noqa: TC001 - msgspec resolves the annotations of this module
+from voxrt.octree.rom import MOST_NAME
 from voxrt.voxelize import Grid, Material, ObjectReport, SceneWarning
 
 if TYPE_CHECKING:
@@ -223,6 +224,8 @@ def _check(path: Path, manifest: Manifest) -> None:
     def refuse(field: str, problem: str) -> None:
         raise RomError(f"{path}: $.{field}: {problem}; build it again")
 
+    if len(manifest.name) > MOST_NAME:
+        refuse("name", f"{len(manifest.name)} characters are no name; it may have {MOST_NAME}")
     if not 1 <= manifest.depth <= 16:
         refuse("depth", f"{manifest.depth} is outside 1 ... 16")
     if manifest.words != 1 + 8 * manifest.blocks:

@@ -9,6 +9,9 @@ from voxrt.octree.statistics import census
 from voxrt.voxelize import Grid, Material
 from voxrt.voxelize.arguments import instance, text
 
+MOST_NAME = 1000
+"""Characters of the longest name: whatever shows a memory shows its name."""
+
 _MOST_MATERIALS = 256
 
 
@@ -19,7 +22,7 @@ class Rom:
     Attributes
     ----------
     name
-        The name of its files. Bytes of a file's name that are no text become ``_``.
+        The name of its files, at most 1000 characters. Bytes of a file's name that are no text become ``_``.
     octree
         The memory.
     materials
@@ -30,7 +33,7 @@ class Rom:
     Raises
     ------
     TypeError, ValueError
-        A value of another type, more than 256 materials, or fewer than the memory uses.
+        A value of another type, a longer name, more than 256 materials, or fewer than the memory uses.
 
     Examples
     --------
@@ -56,6 +59,8 @@ class Rom:
 
     def __post_init__(self) -> None:
         name = "".join("_" if "\ud800" <= c <= "\udfff" else c for c in text("name", self.name))
+        if len(name) > MOST_NAME:
+            raise ValueError(f"name has {len(name)} characters; it may have {MOST_NAME}")
         object.__setattr__(self, "name", name)
         instance("octree", self.octree, Octree)
         if self.grid is not None and instance("grid", self.grid, Grid).depth != self.octree.depth:

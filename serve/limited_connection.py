@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, cast
 
 from websockets.asyncio.server import ServerConnection
-from websockets.frames import DATA_OPCODES, Frame
+from websockets.frames import DATA_OPCODES, CloseCode, Frame, Opcode
 
 from voxrt.serve.rate_limiter import RateLimiter
 from voxrt.serve.strangers import network
@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
 _PIECE, _LARGE_PIECE = 1 << 12, 1 << 16  # bytes that are read before the limits are looked at
 _FEW_FRAMES = 4  # in a piece: the next one may be larger
+TEXT_LIMIT = 1 << 16
+"""Bytes of the longest text message: an upload of 64 files with long names fits."""
+
 _BUFFER_LIMIT = 1 << 20  # bytes to be sent; messages wait above 32 KiB, so that only answers to pings come so far
 
 
@@ -105,7 +108,9 @@ class LimitedConnection(ServerConnection):
         self._guard = guard
         self._bytes = RateLimiter(guard.limits.bytes_per_second, time.monotonic)
         self._frames = RateLimiter(guard.limits.frames_per_second, time.monotonic)
-        self._new_frames = self._fragments = 0
+        self._texts = RateLimiter(guard.limits.text_bytes_per_second, time.monotonic)
+        self._new_frames = self._new_text = self._fragments = 0
+        self._text: int | None = None  # bytes of the text message that is arriving
         self._unread = bytearray()
         self._piece = _PIECE
         self._address: str | None = None
@@ -145,9 +150,22 @@ class LimitedConnection(ServerConnection):
             self._new_frames += 1
             if event.opcode in DATA_OPCODES:
                 self._fragments = 0 if event.fin else self._fragments + 1
+                self._count_text(event)
             if self._fragments > self._guard.limits.fragments:
                 self.transport.abort()
+            if self._text is not None and self._text > TEXT_LIMIT:
+                self.protocol.fail(CloseCode.MESSAGE_TOO_BIG, f"a text message has more than {TEXT_LIMIT} bytes")
+                self.send_data()
+                return
         super().process_event(event)
+
+    def _count_text(self, frame: Frame) -> None:
+        """Text costs far more to read than the chunks of files."""
+        if frame.opcode is not Opcode.CONT:
+            self._text = 0 if frame.opcode is Opcode.TEXT else None
+        if self._text is not None:
+            self._text += len(frame.data)
+            self._new_text += len(frame.data)
 
     def _read_on(self) -> None:
         while self._unread and not self._gate.closed and not self.transport.is_closing():
@@ -156,8 +174,12 @@ class LimitedConnection(ServerConnection):
             super().data_received(piece)
             if self.transport.get_write_buffer_size() > _BUFFER_LIMIT:
                 self.transport.abort()
-            wait = max(self._bytes.charge(len(piece)), self._frames.charge(self._new_frames))
+            wait = max(
+                self._bytes.charge(len(piece)),
+                self._frames.charge(self._new_frames),
+                self._texts.charge(self._new_text),
+            )
             self._piece = min(2 * self._piece, _LARGE_PIECE) if self._new_frames <= _FEW_FRAMES else _PIECE
-            self._new_frames = 0
+            self._new_frames = self._new_text = 0
             if wait > 0:
                 self._gate.hold(wait)

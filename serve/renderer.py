@@ -86,6 +86,7 @@ class Renderer:
         self.trouble: str | None = None
         self._memory = SceneMemory(device)
         self._thread = ThreadPoolExecutor(1, "device")
+        self._aside = ThreadPoolExecutor(1, "aside")
         self._shown_frame: int | None = 0  # of the animation, that the device shows; None where that is not known
         self._loading = asyncio.Lock()
         self._device_lock = asyncio.Lock()  # fair: frames and the steps of a scene that is loaded take turns
@@ -146,7 +147,7 @@ class Renderer:
             The device did not keep it; the present scene stays.
         """
         async with self._loading:
-            bounds = await asyncio.get_running_loop().run_in_executor(None, self._check_and_measure, scene)
+            bounds = await self.aside(partial(self._check_and_measure, scene))
             steps = self._memory.load_in_steps(scene, progress, partial(self._render_first, scene, progress))
             complete = False
             while not complete:
@@ -165,6 +166,10 @@ class Renderer:
                         self.view = self._first_frame[0]
                         self.scene_number += 1
         self._changed.set()
+
+    async def aside(self, call: Callable[[], Result]) -> Result:
+        """Call what looks at a scene, in a thread beside that of the device; one at a time, each takes a moment."""
+        return await asyncio.get_running_loop().run_in_executor(self._aside, call)
 
     async def read_registers(self) -> Mapping[str, int]:
         """Read the registers of the device between two frames; they may have been read a moment ago for another."""
@@ -213,6 +218,7 @@ class Renderer:
     def close(self) -> None:
         """End the present frame and close the device."""
         self.device.stop()
+        self._aside.shutdown(wait=False, cancel_futures=True)
         self._thread.submit(self.device.close)
         self._thread.shutdown()
 

@@ -72,8 +72,13 @@ class RequestHandler:
                 number = self._upload_number()
                 self._handle_chunk(message)
             else:
-                number = request_number(message)
-                await self._handle_request(read_request(message))
+                try:
+                    request = read_request(message)
+                except Refused:
+                    number = request_number(message)
+                    raise
+                number = request.request
+                await self._handle_request(request)
         except (Refused, DeviceError) as error:
             self._refuse(number, str(error))
 
@@ -97,7 +102,7 @@ class RequestHandler:
                 self._require_control()
                 renderer = session.renderer
                 cast = partial(_cast_ray, renderer.scene, renderer.view.frame, request)
-                answer["hit"] = await asyncio.get_running_loop().run_in_executor(None, cast)
+                answer["hit"] = await renderer.aside(cast)
             case ReadCounters():
                 answer["counters"] = session.counters()
             case CancelUpload():

@@ -36,6 +36,7 @@ WORDS_LIMIT = 1 << 26
 """Words of the largest scene."""
 
 _LINE_LIMIT = 1 << 18  # the roots of 4096 frames among it
+_END_SECONDS = 5.0  # that a killed process may take to end, or one that has closed its output
 _COLOURS, _MIRRORS = 3 * 256, 256
 
 
@@ -110,8 +111,18 @@ class ChildReader:
         try:
             return await _receive(process, progress)
         finally:
-            with contextlib.suppress(ProcessLookupError):
-                os.killpg(process.pid, signal.SIGKILL)
+            await _end(process)
+
+
+async def _end(process: asyncio.subprocess.Process) -> None:
+    """Kill a process and its children, and wait for their end, but not for ever."""
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGKILL)
+    with contextlib.suppress(TimeoutError):
+        async with asyncio.timeout(_END_SECONDS):
+            assert process.stdout is not None
+            while await process.stdout.read(1 << 20):  # asyncio waits until the pipe is empty, too
+                pass
             await process.wait()
 
 
@@ -120,19 +131,29 @@ async def _receive(process: asyncio.subprocess.Process, progress: Progress) -> S
     assert out is not None
     try:
         while True:
-            match msgspec.json.decode(await out.readline(), type=Message):
+            match msgspec.json.decode(await out.readuntil(), type=Message):
                 case Stage(stage, done, total):
                     progress(stage, done, total)
                 case Problem(text):
                     raise Refused(shown_line(text))
                 case described:
                     return await _receive_scene(out, described)
-    except (ValueError, msgspec.MsgspecError, asyncio.IncompleteReadError):
-        code = await process.wait()
-        how = signal.Signals(-code).name if code < 0 else f"exit code {code}"
-        raise Refused(
-            f"the process that read the files died ({how}): a file is damaged, or needs more memory than there is"
-        ) from None
+    except asyncio.IncompleteReadError:
+        how = await _how_it_ended(process)
+    except (asyncio.LimitOverrunError, msgspec.MsgspecError):
+        how = "it sent what is no scene"
+    raise Refused(
+        f"the process that read the files died ({how}): a file is damaged, or needs more memory than there is"
+    )
+
+
+async def _how_it_ended(process: asyncio.subprocess.Process) -> str:
+    """Say how a process ended that has closed its output."""
+    try:
+        code = await asyncio.wait_for(process.wait(), _END_SECONDS)
+    except TimeoutError:
+        return "it closed its output and went on"
+    return signal.Signals(-code).name if code < 0 else f"exit code {code}"
 
 
 async def _receive_scene(out: asyncio.StreamReader, described: Described) -> Scene:

@@ -24,6 +24,8 @@ class Limits:
     frames_per_second, bytes_per_second
         What is read of a connection, on average; a burst may have twice as many. The rest waits. Frames are those of
         WebSocket: messages, their fragments, pings and pongs.
+    text_bytes_per_second
+        What is read of a connection's text messages, on average; a burst may have twice as many. The rest waits.
     fragments
         Fragments of a message.
     handshake_seconds
@@ -42,6 +44,7 @@ class Limits:
     new_connections_per_address_and_second: float = 50
     frames_per_second: float = 400
     bytes_per_second: float = 1 << 24
+    text_bytes_per_second: float = 1 << 17
     fragments: int = 64
     handshake_seconds: float = 5
     send_seconds: float = 20

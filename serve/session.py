@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import time
 from dataclasses import asdict
+from functools import partial
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
@@ -213,7 +214,7 @@ class Session:
         load = self._load = SceneLoad(client)
         try:
             scene = await load.make(made)
-            await asyncio.get_running_loop().run_in_executor(None, self.renderer.check_scene, scene)
+            await self.renderer.aside(partial(self.renderer.check_scene, scene))
             if not check_only:
                 await self.renderer.load(scene, progress, load.check)
         finally:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fakes.blob import rewritten
 from hypothesis import given, settings
 from oracles.kaitai import Description
 from oracles.random_worlds import dense_cubes
@@ -138,22 +139,6 @@ def test_the_c_header_reads_what_is_written(tmp_path):
     ]
 
 
-def rewritten(data, name, body=None):
-    """The blob with one section exchanged (or left out), its table made right again."""
-    count = struct.unpack_from("<I", data, 12)[0]
-    entries = [struct.unpack_from("<4sIII", data, 24 + 16 * i) for i in range(count)]
-    bodies = {n: data[o : o + size] for n, o, size, _ in entries}
-    if body is None:
-        del bodies[name]
-    else:
-        bodies[name] = body
-    table, rest, start = b"", b"", 24 + 16 * len(bodies)
-    for n, section in bodies.items():
-        table += struct.pack("<4sIII", n, start + len(rest), len(section), zlib.crc32(section))
-        rest += section
-    return data[:12] + struct.pack("<III", len(bodies), start + len(rest), zlib.crc32(table)) + table + rest
-
-
 @pytest.mark.parametrize(
     ("change", "message"),
     [
@@ -167,6 +152,7 @@ def rewritten(data, name, body=None):
         (lambda d: d.replace(b"red", b"rad"), r"section MATL: is damaged \(CRC-32\)"),
         (lambda d: rewritten(d, b"MATL"), "section MATL: is missing"),
         (lambda d: rewritten(d, b"NAME", b"\xff"), "has another layout than that of version 1"),
+        (lambda d: rewritten(d, b"NAME", b"n" * 1001), "section NAME: 1001 characters are no name; it may have 1000"),
         (lambda d: rewritten(d, b"VIEW", b"1234"), "has another layout"),
         (lambda d: rewritten(d, b"WORD", b"12345"), "section WORD: 5 bytes are not words of 4"),
         (lambda d: rewritten(d, b"WORD", b"\2\0\0\0"), "word 0x0: pointer 00000002 does not stand"),
@@ -182,6 +168,20 @@ def test_damaged_blobs_are_refused(tmp_path, change, message):
     path.write_bytes(change(export.blob_bytes(blob())))
     with pytest.raises(RomError, match=message):
         export.read_blob(path)
+
+
+def test_the_longest_name_is_read(tmp_path):
+    path = tmp_path / "a.blob"
+    path.write_bytes(rewritten(export.blob_bytes(blob()), b"NAME", "é".encode() * 1000))
+    assert export.read_blob(path).rom.name == "é" * 1000
+
+
+def test_names_too_long_for_their_field_end_at_a_character(tmp_path):
+    whole = blob()
+    rom = replace(whole.rom, materials=(EMPTY, *(Material("é" * 40_000 + str(i), (i, 0, 0)) for i in (1, 2))))
+    path = tmp_path / "a.blob"
+    path.write_bytes(export.blob_bytes(replace(whole, rom=rom)))
+    assert export.read_blob(path).rom.materials[1].name == "é" * 32_767
 
 
 def test_unknown_sections_are_passed_over(tmp_path):

@@ -174,6 +174,7 @@ def test_palette_is_distinct():
     ("change", "message"),
     [
         ({"schema": 2}, "schema 2 is not known to this version"),
+        ({"name": "n" * 1001}, r"\$\.name: 1001 characters are no name; it may have 1000"),
         ({"depth": 0}, r"\$\.depth: 0 is outside 1 \.\.\. 16"),
         ({"depth": "2"}, r"Expected `int`, got `str` - at `\$\.depth`"),
         ({"words": 10}, r"\$\.words: 10 are not a root"),

@@ -16,12 +16,14 @@ BEGIN = b"\x02\x80" + MASK
 
 
 def text(message: bytes) -> bytes:
-    assert len(message) < 126
-    return bytes([0x81, 0x80 | len(message)]) + MASK + message
+    size = bytes([0x80 | len(message)]) if len(message) < 126 else b"\xff" + len(message).to_bytes(8, "big")
+    return b"\x81" + size + MASK + message
 
 
 HEADERS = b"Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: "
 TAKE_AND_RELEASE = text(b'{"type": "take"}') + text(b'{"type": "release"}')
+NUMBERS = text(b'{"type": "view", "camera": [' + b"1," * 32_000 + b"1]}")
+MORE_NUMBERS = text(b'{"type": "view", "camera": [' + b"1," * 130_000 + b"1]}")
 CHUNK = b"\x82\xfe\xff\xff" + MASK + bytes(0xFFFF)
 
 
@@ -76,13 +78,15 @@ def connect_for_ever(port: int) -> None:
 
 
 def floods(port: int) -> list[threading.Thread]:
-    """Ten floods of different kinds."""
+    """Floods of different kinds."""
     sent = [
         (PING, b"", True),
         (PING, b"", False),
         (text(b"{}"), b"", True),
         (text(b"{}"), b"", False),
         (text(b'{"type": "view", "camera": 3}'), b"", True),
+        (NUMBERS, b"", True),
+        (MORE_NUMBERS, b"", True),
         (TAKE_AND_RELEASE, b"", True),
         (FRAGMENT, BEGIN, True),
         (CHUNK, b"", True),

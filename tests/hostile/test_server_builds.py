@@ -8,7 +8,7 @@ import signal
 from pathlib import Path
 
 import pytest
-from fakes.blob import blob_of
+from fakes.blob import blob_of, rewritten
 from fakes.device import never_merged, scene
 from fakes.frame_server import ignore
 from fakes.serving import WAIT, serving, until
@@ -127,11 +127,13 @@ async def test_files_and_names_are_limited(server):
         pair = [{"name": name, "size": 9, "crc32": 0} for name in ("a.mem", "A.MEM")]
         with pytest.raises(Refused, match="two files have the name"):
             await client.request("upload", files=pair)
-        hidden = blob_of(scene("x"), name="a\u202eb\x07\n" + "c" * 5000)
+        hidden = blob_of(scene("x"), name="a\u202eb\x07\n" + "c" * 990)
         name = (await client.upload({"x.blob": hidden}, ignore))["scene"]["name"]
         assert name.startswith("a\\x202eb\\x07\\x0ac")
         assert name.isprintable()
         assert len(name) <= 1000
+        with pytest.raises(Refused, match="section NAME: 1048576 characters are no name; it may have 1000"):
+            await client.upload({"x.blob": rewritten(hidden, b"NAME", b"c" * (1 << 20))}, ignore)
 
 
 async def outcome(client, number):

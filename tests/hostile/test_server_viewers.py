@@ -11,16 +11,24 @@ import sys
 from contextlib import asynccontextmanager
 from pathlib import Path
 
+import numpy as np
 import pytest
 from fakes import floods
 from fakes.device import FakeDevice, scene
 from fakes.frame_server import served
 from fakes.serving import serving, until
 from fakes.sockets import ended, raw_connection
+from websockets.asyncio.client import connect
+from websockets.frames import CloseCode
 
+from voxrt.board.scene import Scene
 from voxrt.serve.frame_client import open_client
+from voxrt.serve.limited_connection import TEXT_LIMIT
 from voxrt.serve.packets import FRAME_HEADER
 from voxrt.serve.server_options import Limits
+
+VOID = [1, *(1 + 8 * (level + 1) for level in range(15) for _ in range(8)), *[0xFFFFFF00] * 8]
+"""A ray goes from leaf to leaf through 16 levels of emptiness."""
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 LEGACY_REQUEST = struct.pack("<7I", *[0x7FF000] * 6, 0)
@@ -144,7 +152,7 @@ def flood(port):
     return subprocess.Popen([sys.executable, floods.__file__, str(port)], stdin=subprocess.PIPE)
 
 
-async def test_ten_floods_leave_a_viewer_its_frames(tmp_path):
+async def test_floods_leave_a_viewer_its_frames(tmp_path):
     """The polite viewer goes on, memory stays, nothing is logged, and Ctrl-C ends the server in their midst."""
 
     with serving(tmp_path, EXAMPLES / "house.obj", "--depth", 5) as server:
@@ -164,6 +172,34 @@ async def test_ten_floods_leave_a_viewer_its_frames(tmp_path):
                 flooding.stdin.close()
                 flooding.wait()
         assert server.log == ""
+
+
+@pytest.mark.parametrize("parts", [1, 3])
+async def test_a_text_that_is_too_long_ends_its_connection(parts):
+    async with served(FakeDevice(), scene()) as server, connect(server.url.replace("http", "ws") + "v2") as viewer:
+        await viewer.send(["1" * (TEXT_LIMIT // parts)] * parts)
+        await viewer.send("1" * TEXT_LIMIT)  # both are long enough to be no request, and short enough to be read
+        await viewer.send(["1" * ((TEXT_LIMIT + parts) // parts)] * parts)
+        await viewer.wait_closed()
+    assert viewer.close_code == CloseCode.MESSAGE_TOO_BIG
+
+
+async def test_the_longest_announcement_of_an_upload_is_read():
+    files = [{"name": "\u00e9" * 98 + f"{number:02}.a", "size": 1, "crc32": 0} for number in range(64)]
+    async with served(FakeDevice(), scene()) as server, open_client(server.url) as client:
+        await client.take_control()
+        assert (await client.request("upload", files=files))["type"] == "ready"
+
+
+async def test_rays_leave_nothing_to_wait_for_at_the_end():
+    """Rays and checks have a thread of their own; that of the event loop would be waited for."""
+    void = Scene("void", 16, np.array(VOID, np.uint32), np.zeros((256, 3), np.uint8), np.zeros(256, bool))
+    async with served(FakeDevice(), void) as server, open_client(server.url) as client:
+        await client.take_control()
+        for _ in range(20):
+            answer = await client.request("ray", origin=[16, 16, 16], direction=[8191, 8190, 8189])
+            assert answer["hit"] is None
+        assert asyncio.get_running_loop()._default_executor is None
 
 
 async def test_shutdown_with_viewers_that_read_nothing(tmp_path):

@@ -55,65 +55,96 @@ def refuse_pointer(path: object, data: bytes, place: str = "") -> None:
 
 @dataclass(frozen=True, slots=True)
 class ExternalFiles:
-    """The folders in which the files that an asset refers to may be."""
+    """The files that an asset refers to by name: those in its folder and below may be opened, and no others.
+
+    Whether a name leads out of the folder is told from the name and the links in the folder alone: nobody learns which
+    other files there are.
+    """
 
     folder: Path  # the asset's folder, with links resolved
+    given: Path  # the asset's folder as the caller wrote it, absolute
     allow_outside: bool = False  # whether files outside that folder may be opened
 
     @classmethod
     def of(cls, asset: Path, *, allow_outside: bool) -> ExternalFiles:
         """Return the external files of the file `asset`."""
-        return cls(asset.parent.resolve(), allow_outside)
+        return cls(asset.parent.resolve(), Path(os.path.normpath(asset.parent.absolute())), allow_outside)
 
-    def allows(self, target: Path) -> bool:
-        """Tell whether the file `target`, with links resolved, may be opened."""
-        return self.allow_outside or target.is_relative_to(self.folder)
+    def is_outside(self, *names: str) -> bool:
+        """Tell whether one of `names` leads out of the folder, and that is not allowed. No file need be there."""
+        return any(self._refuses(name) for name in names)
 
     def find(self, *names: str) -> Path | None:
-        """Return the first existing file of `names`, relative to the folder, allowed or not; None where none exists."""
+        """Return the first existing file of `names`, relative to the folder, that may be opened; None without any."""
         for name in names:
             try:
                 target = (self.folder / name).resolve()
-                if target.is_file():
+                if not self._refuses(name) and target.is_file():
                     return target
             except (OSError, ValueError, RuntimeError):  # too long, a NUL, a loop of links
                 continue
         return None
 
-    def reported(
-        self, found: Path | None, kind: str, name: str, log: WarningLog, *, count: int = 1, instead: str = ""
-    ) -> Path | None:
-        """Return the file that :meth:`find_exported` found; None, with a warning, where it may not be opened.
+    def _refuses(self, name: str) -> bool:
+        return not (self.allow_outside or self._is_below(self.folder / name))
 
-        `kind` says what `name` is: a texture, a material library. `instead` says what replaces it.
-        """
-        if found is None:
-            log.add(f"missing-{kind.rsplit(maxsplit=1)[-1]}", f"{kind} {name!r} was not found{instead}", count)
-        elif not self.allows(found):
-            problem = f"{kind} {name!r} is outside the file's folder and was not opened"
-            log.add("outside", f"{problem}; {ALLOW_OUTSIDE}", count)
-            found = None
-        return found
+    def _is_below(self, place: Path) -> bool:
+        plain = Path(os.path.normpath(place))  # without a look at what is there
+        if not (plain.is_relative_to(self.folder) or plain.is_relative_to(self.given)):
+            return False
+        try:
+            return plain.resolve().is_relative_to(self.folder)
+        except (OSError, ValueError, RuntimeError):
+            return True  # nothing can be there
 
     def find_exported(self, name: str, start: Path | None = None) -> Path | None:
-        """Return the file that another machine's path means; None where there is none.
+        """Return the file that another machine's path means, if it may be opened; None where there is none.
 
-        Backslashes separate folders, too. The last part alone is tried as well, and case does not matter. An allowed
-        file is preferred to others. Names are relative to the folder `start`, or to the asset's folder for None.
+        Backslashes separate folders, too. The last part alone is tried as well, and case does not matter. Names are
+        relative to the folder `start`, or to the asset's folder for None.
         """
-        parts = PurePosixPath(name.strip().strip('"').replace("\\", "/")).parts
-        found = [self._ignoring_case(tail, start or self.folder) for tail in (parts, parts[-1:]) if tail]
-        there = [target for target in found if target is not None]
-        return next((target for target in there if self.allows(target)), next(iter(there), None))
+        parts = _parts(name)
+        found = (self._ignoring_case(tail, start or self.folder) for tail in (parts, parts[-1:]) if tail)
+        return next((target for target in found if target is not None), None)
+
+    def reported(
+        self,
+        found: Path | None,
+        kind: str,
+        name: str,
+        log: WarningLog,
+        *,
+        start: Path | None = None,
+        count: int = 1,
+        instead: str = "",
+    ) -> Path | None:
+        """Return the file that :meth:`find_exported` found, or None with a warning.
+
+        `kind` says what `name`, relative to `start`, is: a texture, a material library. `instead` says what replaces
+        it.
+        """
+        if found is not None:
+            return found
+        if self.is_outside(str(Path(start or self.folder, *_parts(name)))):
+            problem = f"{kind} {name!r} is outside the file's folder and was not opened"
+            log.add("outside", f"{problem}; {ALLOW_OUTSIDE}", count)
+        else:
+            log.add(f"missing-{kind.rsplit(maxsplit=1)[-1]}", f"{kind} {name!r} was not found{instead}", count)
+        return None
 
     def _ignoring_case(self, parts: tuple[str, ...], start: Path) -> Path | None:
         place = start
         try:
             for part in parts:
                 here = place / part
-                if part != ".." and not here.exists() and place.is_relative_to(self.folder) and place.is_dir():
+                if part != ".." and self._is_below(place) and not here.exists() and place.is_dir():
                     here = next((one for one in sorted(place.iterdir()) if one.name.lower() == part.lower()), here)
                 place = here
         except (OSError, ValueError, RuntimeError):
             return None
         return self.find(str(place))
+
+
+def _parts(name: str) -> tuple[str, ...]:
+    """Return the folders and the name of a path that another system may have written."""
+    return PurePosixPath(name.strip().strip('"').replace("\\", "/")).parts

@@ -217,8 +217,7 @@ class _Builder:
                 raise self._checked.error(
                     (*where, "file"), "a scene file cannot be an asset of another", "copy its objects"
                 )
-            found = self._external_files.find(asset.file)
-            if found is not None and not self._external_files.allows(found):
+            if self._external_files.is_outside(asset.file):
                 problem = f"asset {asset.file[:60]!r} is outside the scene file's folder"
                 raise self._checked.error((*where, "file"), problem, ALLOW_OUTSIDE)
             try:

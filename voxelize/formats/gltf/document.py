@@ -140,21 +140,19 @@ class Document:
     def resource(self, uri: str, place: str, most: int = -1) -> bytes | None:
         """Return inline data, or at most `most` bytes of a file that may be opened; None where there is no such file.
 
-        A file adds to the asset's size, and so to the memory that the asset may use.
+        Raise AssetError for a place outside of the asset's folder, whether there is a file or not. A file adds to the
+        asset's size, and so to the memory that the asset may use.
         """
         if uri.startswith("data:"):
             return self._inline(uri, place)
         scheme = uri.partition(":")[0]
         if ":" in uri and "/" not in scheme:
             raise self.error(place, f"the address {uri[:60]!r} was not opened", "put the file into the asset's folder")
-        # Some exporters do not encode names, or write backslashes; web viewers append queries.
-        plain = unquote(uri)
-        without_query = unquote(uri.partition("?")[0].partition("#")[0])
-        target = self._external_files.find(plain, uri, plain.replace("\\", "/"), without_query)
+        target = self._external_files.find(*_spellings(uri))
         if target is None:
+            if self.is_outside(uri):
+                raise self.error(place, f"{uri[:60]!r} is outside the asset's folder", ALLOW_OUTSIDE)
             return None
-        if not self._external_files.allows(target):
-            raise self.error(place, f"{uri[:60]!r} is outside the asset's folder", ALLOW_OUTSIDE)
         try:
             with target.open("rb") as file:
                 data = file.read(most)
@@ -163,6 +161,10 @@ class Document:
             raise self.error(place, problem, "check its permissions") from error
         self._allowed += _BYTES_PER_INPUT_BYTE * len(data)
         return data
+
+    def is_outside(self, uri: str) -> bool:
+        """Tell whether `uri` is the path of a place that may not be opened."""
+        return ":" not in uri.partition("/")[0] and self._external_files.is_outside(*_spellings(uri))
 
     def _inline(self, uri: str, place: str) -> bytes:
         header, comma, body = uri.partition(",")
@@ -177,3 +179,12 @@ class Document:
             return base64.b64decode(text + "=" * (-len(text) % 4), validate=True)
         except (binascii.Error, ValueError):
             raise self.error(place, "a data URI that is not base64") from None
+
+
+def _spellings(uri: str) -> tuple[str, ...]:
+    """Return the paths that a URI may mean: some exporters do not encode names, or write backslashes.
+
+    Web viewers append queries.
+    """
+    plain = unquote(uri)
+    return plain, uri, plain.replace("\\", "/"), unquote(uri.partition("?")[0].partition("#")[0])

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from voxrt.voxelize.colour.texture import Texture
+from voxrt.voxelize.formats.external_files import ALLOW_OUTSIDE
 from voxrt.voxelize.formats.gltf.extensions import CONVERT_IMAGES
 from voxrt.voxelize.formats.gltf.schema import Sampler, TextureSource
 from voxrt.voxelize.formats.image_file import decode_image
@@ -65,6 +66,10 @@ class Textures:
         document = self._document
         image = document.gltf.images[index]
         here = f"images[{index}]"
+        if image.uri is not None and document.is_outside(image.uri):
+            problem = f"{image.uri[:60]!r} is outside the asset's folder and was not opened"
+            document.log.add("outside", f"{here}: {problem}; {ALLOW_OUTSIDE}")
+            return None
         if image.uri is not None:
             data = document.resource(image.uri, f"{here}.uri")
             if data is None:

@@ -176,7 +176,7 @@ class _AppearanceBuilder:
         files, name = self._external_files, placement.name
         places = [files.find_exported(one, start) for one in spellings(name) for start in (folder, None)]
         found = next((place for place in places if place is not None), None)
-        found = files.reported(found, "texture", name, self._log, count=faces, instead=INSTEAD)
+        found = files.reported(found, "texture", name, self._log, start=folder, count=faces, instead=INSTEAD)
         if found is None:
             return None
         if found not in self._images:

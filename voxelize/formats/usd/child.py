@@ -1,6 +1,7 @@
 """The process that reads one USD file: ``python -m voxrt.voxelize.formats.usd.child PATH REQUEST``.
 
-REQUEST is JSON of :class:`Request`. The scene, or why there is none, goes to the standard output as
+REQUEST is JSON of :class:`Request`. Unless it allows files outside of PATH's folder, the kernel refuses to open them,
+whatever the stage asks for. The scene, or why there is none, goes to the standard output as
 :mod:`voxrt.voxelize.formats.scene_message` says. Whatever usd-core does to this process, the one that started it goes
 on.
 """
@@ -11,12 +12,14 @@ import ctypes
 import os
 import signal
 import sys
+import tempfile
 import traceback
 from pathlib import Path
 
 import msgspec
 
 from voxrt.voxelize.errors import AssetError, DoesNotFitError
+from voxrt.voxelize.file_sandbox import confine
 from voxrt.voxelize.formats.scene_message import (
     AssetErrorMessage,
     DoesNotFitMessage,
@@ -35,6 +38,7 @@ def main() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent decides
     path, request = Path(sys.argv[1]), msgspec.json.decode(sys.argv[2], type=Request)
     _end_with(request.parent)
+    os.chdir(path.parent)  # usd-core looks here for layers whose names begin without a dot
     output = os.dup(1)
     os.dup2(2, 1)  # what libraries print is no part of the message
     for part in _reply(path, request):
@@ -45,6 +49,8 @@ def main() -> None:
 
 def _reply(path: Path, request: Request) -> list[bytes | memoryview]:
     try:
+        if not request.allow_outside:
+            confine((path, path.parent), (Path(tempfile.gettempdir()),))
         allowance = Allowance(Limits(request.memory, request.most_memory, request.seconds))
         from voxrt.voxelize.formats.usd.stage_scene import read_stage  # noqa: PLC0415 - within the limits
 

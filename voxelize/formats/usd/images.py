@@ -10,10 +10,9 @@ from pxr import Ar
 
 from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8, srgb_from_linear
 from voxrt.voxelize.colour.texture import Texture
-from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.external_files import ALLOW_OUTSIDE
 from voxrt.voxelize.formats.image_file import decode_image
-from voxrt.voxelize.formats.usd.layers import found_at
+from voxrt.voxelize.formats.usd.layers import outer_file
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -80,10 +79,12 @@ class Images:
         if file not in self._pixels:
             self._pixels[file] = None
             if file and Path(file.rstrip("]")).suffix.lower() in _READABLE:
-                found = found_at(file, self._external_files)
-                if found is not None and not self._external_files.allows(found):
-                    problem = f"texture {Path(file).name!r} is outside the file's folder"
-                    raise AssetError(self._path, problem, fix=ALLOW_OUTSIDE)
+                outer = outer_file(file)
+                if self._external_files.is_outside(outer):
+                    problem = f"texture {Path(file).name!r} is outside the file's folder and was not opened"
+                    self._log.add("outside", f"{problem}; {ALLOW_OUTSIDE}")
+                    return None
+                found = self._external_files.find(outer)
                 if found is not None and file == str(found):  # what a package holds is part of its size
                     self._allowance.add(found.stat().st_size)
                 opened = Ar.GetResolver().OpenAsset(Ar.ResolvedPath(file))

@@ -44,6 +44,8 @@ if TYPE_CHECKING:
 _CHILD = "voxrt.voxelize.formats.usd.child"
 # Each thread takes memory of its own, whatever it does.
 _ENVIRONMENT = {"PXR_WORK_THREAD_LIMIT": "4", "MALLOC_ARENA_MAX": "2", "OPENBLAS_NUM_THREADS": "1"}
+_END_SECONDS = 5.0  # that a process may take to end when its message has ended
+_SEARCH_PATH = "PXR_AR_DEFAULT_SEARCH_PATH"  # folders in which usd-core looks for layers
 _REPAIR = "it is damaged, or made to do harm: repair it or export it again"
 
 
@@ -102,25 +104,27 @@ def read_isolated(
         most_memory=limits.most_memory,
         seconds=limits.seconds,
     )
+    environment = os.environ | _ENVIRONMENT
+    if not allow_outside:
+        environment.pop(_SEARCH_PATH, None)
     # usd-core leaves notes about its crashes in the temporary folder: it gets one that is removed.
     with tempfile.TemporaryDirectory(prefix="voxrt-usd-") as folder, tempfile.TemporaryFile() as printed:
         child = subprocess.Popen(  # noqa: S603 - our own module; the file's name is one argument
             # -P: the folder that the user works in may hold a hostile numpy.py.
-            [sys.executable, "-P", "-m", _CHILD, path, msgspec.json.encode(request)],
+            [sys.executable, "-P", "-m", _CHILD, path.absolute(), msgspec.json.encode(request)],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=printed,
-            env=os.environ | {"TMPDIR": folder, **_ENVIRONMENT},
+            env=environment | {"TMPDIR": folder},
         )
         assert child.stdout is not None
         try:
             message = _receive(child.stdout, limits.most_memory)
-        except BaseException:  # Ctrl-C among others
-            child.kill()
-            raise
-        finally:
+            status = _end(child) if message is None else 0
+        finally:  # Ctrl-C among others
             child.stdout.close()
-            status = child.wait()
+            child.kill()
+            child.wait()
         if message is None:
             raise _ended(path, status, _tail(printed), limits)
     try:
@@ -161,6 +165,17 @@ def _receive(pipe: IO[bytes], most: int) -> tuple[bytes, NDArray[np.uint8]] | No
             return None
         filled += count
     return text, arrays
+
+
+def _end(child: subprocess.Popen[bytes]) -> int:
+    """Return the exit status of a process whose message is not whole; what does not end soon is killed."""
+    assert child.stdout is not None
+    child.stdout.close()  # so that it does not wait for a reader
+    try:
+        return child.wait(_END_SECONDS)
+    except subprocess.TimeoutExpired:
+        child.kill()
+        return child.wait()
 
 
 def _tail(printed: IO[bytes]) -> bytes:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
-from pxr import Usd, UsdShade
+from pxr import Sdf, Usd, UsdShade
 
 from voxrt.voxelize.colour.srgb import srgb_from_linear
 from voxrt.voxelize.formats.usd.values import numbers
@@ -33,7 +33,7 @@ _WRAPS: dict[str, Wrap] = {"repeat": "repeat", "mirror": "mirror", "clamp": "cla
 class ImageSource:
     """A texture: its image and its placement on the surface."""
 
-    file: str  # the resolved asset path; empty for none
+    file: str  # its path, there or not; empty for none
     raw: bool = False  # whether its colours are linear instead of sRGB
     wrap: tuple[Wrap, Wrap] = ("repeat", "repeat")  # how coordinates outside 0 … 1 are treated
     primvar: str = "st"  # the name of the primvar with the texture coordinates
@@ -143,14 +143,13 @@ def _network(node: UsdShade.Shader, output: str, time: Usd.TimeCode, log: Warnin
 
 
 def _image_source(node: UsdShade.Shader, time: Usd.TimeCode, log: WarningLog) -> ImageSource:
-    file = _value(node, "file", time)
     wrap_s, wrap_t = (str(_value(node, name, time) or "repeat") for name in ("wrapS", "wrapT"))
     if "black" in (wrap_s, wrap_t):
         log.add("texture", "textures that are black beyond their edges were continued with their edges' colours")
     primvar, turn, scale, offset = _coordinates(node, time, log)
     connected = _upstream(node, "st") is not None
     return ImageSource(
-        file=str(getattr(file, "resolvedPath", "") or ""),
+        file=_file(node, time),
         raw=str(_value(node, "sourceColorSpace", time)) == "raw",
         wrap=(_WRAPS.get(wrap_s, "repeat"), _WRAPS.get(wrap_t, "repeat")),
         primvar=primvar,
@@ -192,12 +191,24 @@ def _upstream(node: UsdShade.Shader, name: str) -> UsdShade.Shader | None:
 
 def _value(node: UsdShade.Shader, name: str, time: Usd.TimeCode) -> object:
     """Return an input's constant value, from the node or from the material's interface; None where it has none."""
+    attribute = _constant(node, name)
+    return attribute.Get(time) if attribute else None
+
+
+def _constant(node: UsdShade.Shader, name: str) -> Usd.Attribute | None:
     source = node.GetInput(name)
-    if source:
-        for attribute in UsdShade.Utils.GetValueProducingAttributes(source):
-            if not UsdShade.Output.IsOutput(attribute):
-                return attribute.Get(time)
-    return None
+    producing = UsdShade.Utils.GetValueProducingAttributes(source) if source else ()
+    return next((one for one in producing if not UsdShade.Output.IsOutput(one)), None)
+
+
+def _file(node: UsdShade.Shader, time: Usd.TimeCode) -> str:
+    """Return the path of a texture's file, there or not; empty for none."""
+    attribute = _constant(node, "file")
+    value = attribute.Get(time) if attribute else None
+    if not isinstance(value, Sdf.AssetPath):
+        return ""
+    specs = attribute.GetPropertyStack(time) if attribute and value.path and not value.resolvedPath else ()
+    return str(specs[0].layer.ComputeAbsolutePath(value.path) if specs else value.resolvedPath)
 
 
 def _colour(value: object) -> Linear | None:

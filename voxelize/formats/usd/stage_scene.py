@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from pxr import Sdf
+
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.external_files import ExternalFiles, asset_name
 from voxrt.voxelize.formats.opacity import OPAQUE_FROM
 from voxrt.voxelize.formats.scene_frame import scene_transform
 from voxrt.voxelize.formats.usd.cameras import read_cameras
 from voxrt.voxelize.formats.usd.diagnostics import caught
-from voxrt.voxelize.formats.usd.layers import open_layers, refuse_layers_used_outside
+from voxrt.voxelize.formats.usd.layers import open_layers, refuse_layers_opened_outside
 from voxrt.voxelize.formats.usd.stage import (
     metres_per_unit,
     note_animation,
@@ -45,10 +47,10 @@ def read_stage(
     """
     log = WarningLog()
     external_files = ExternalFiles.of(path, allow_outside=allow_outside)
+    before = set(Sdf.Layer.GetLoadedLayers())
     with caught(path, log):
         layers = open_layers(path, external_files, allowance)
         stage = open_stage(path, variants)
-        refuse_layers_used_outside(path, stage, external_files)
         note_layers_that_disagree(stage, log)
         if time is None:
             note_animation(stage, log)
@@ -57,6 +59,7 @@ def read_stage(
         traversal = StageTraversal(path, stage, external_files, log, allowance, moment, opaque_from)
         objects = traversal.objects(to_scene)
         cameras = read_cameras(stage, moment, to_scene, log)
+        refuse_layers_opened_outside(path, external_files, before)
         del layers  # kept open until here, so that the stage need not parse them again
     if not objects:
         reasons = "; ".join(one.message for one in log.warnings())
