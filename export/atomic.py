@@ -44,14 +44,15 @@ def write_atomically(path: Path, data: bytes | Iterable[bytes]) -> None:
 def write_together(files: Mapping[Path, bytes | Iterable[bytes] | None]) -> None:
     """Write files that belong together: an error or an interruption leaves all of the old ones or all of the new.
 
-    The bytes of a file may come in pieces. None in place of them removes a file that does not belong to the new set.
+    The bytes of a file may come in pieces. None in place of them removes a file that does not belong to the new set, or
+    a link to one.
 
     They change places in their order. Sets whose first files stand in one folder change one after another, whoever
     writes them. A process that is killed in the microseconds between two renamings leaves the rest of the set under
     the temporary names, where :func:`staged_files` finds it. After an OSError all old files are untouched and nothing
     new stays.
     """
-    targets = {_followed(path): data for path, data in files.items()}
+    targets = {path if data is None else _followed(path): data for path, data in files.items()}
     with ExitStack() as stack:
         if len(targets) > 1:
             stack.enter_context(_lock_folder(next(iter(targets)).parent))

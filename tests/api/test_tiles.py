@@ -132,11 +132,58 @@ def test_files_of_others_are_left_alone(ball, tmp_path):
     assert left(tmp_path / "ball.tiles") == ["notes"]
 
 
+OWN = {"key": b"mine\n", "words": b"mine", "map-1.tile": b"mine", "0-0.tile": b"mine", ".a.tmp": b"mine"}
+
+
+@pytest.mark.parametrize("key", [b"mine\n", b"0" * 32 + b" 128", b"0" * 32 + b" 1 28\n", b"0" * 32 + b" 128\n\n", b""])
+def test_a_folder_whose_key_no_build_wrote_is_left_alone(ball, tmp_path, key):
+    folder = tmp_path / "ball.tiles"
+    folder.mkdir()
+    for name, data in {**OWN, "key": key}.items():
+        (folder / name).write_bytes(data)
+    with pytest.raises(OutputError, match="no build put there"):
+        voxrt.build(ball, tmp_path / "ball.mem", depth=DEPTH, memory=LITTLE)
+    assert {path.name: path.read_bytes() for path in folder.iterdir()} == {**OWN, "key": key}
+
+
+def test_links_to_folders_of_others_are_not_followed(ball, tmp_path):
+    other = tmp_path / "other"
+    other.mkdir()
+    for name, data in {**OWN, "key": b"0" * 32 + b" 128\n"}.items():
+        (other / name).write_bytes(data)
+    before = left(other)
+    (tmp_path / "ball.tiles").symlink_to(other)
+    with pytest.raises(OutputError, match="is a link to another folder"):
+        voxrt.build(ball, tmp_path / "ball.mem", depth=DEPTH, memory=LITTLE)
+    assert left(other) == before
+    (tmp_path / "ball.tiles").unlink()
+    (tmp_path / "ball.tiles").mkdir()
+    (tmp_path / "ball.tiles" / "key").symlink_to(other / "key")
+    with pytest.raises(OutputError, match="no build put there"):
+        voxrt.build(ball, tmp_path / "ball.mem", depth=DEPTH, memory=LITTLE)
+    assert (other / "key").read_bytes() == b"0" * 32 + b" 128\n"
+
+
+def test_files_of_others_in_the_folder_of_a_build_stay(ball, at_once, tmp_path):
+    run(tmp_path, 9, moment=5)
+    folder = tmp_path / "ball.tiles"
+    links = {"link.tile": tmp_path / "kept", "folder.tile": tmp_path}
+    (tmp_path / "kept").write_bytes(b"voxrtil2")
+    for name in ("map-1.tile", "notes.txt", ".a.tmp"):
+        (folder / name).write_text("mine")
+    for name, target in links.items():
+        (folder / name).symlink_to(target)
+    voxrt.build(ball, tmp_path / "ball.mem", depth=DEPTH, memory=LITTLE)
+    assert words_of(tmp_path) == at_once
+    assert left(folder) == sorted(["map-1.tile", "notes.txt", ".a.tmp", *links])
+    assert (tmp_path / "kept").exists()
+
+
 def test_tiles_are_used_whatever_is_free_now(tmp_path):
     def claimed(side, key="0" * 32):
         with suppress(KeyboardInterrupt), TileStore(tmp_path / "a.tiles") as store:
             found = store.claim(key, side)
-            (tmp_path / "a.tiles" / f"{found}.tile").touch()
+            (tmp_path / "a.tiles" / f"{found}.tile").write_bytes(b"voxrtil2")
             raise KeyboardInterrupt
         return found, left(tmp_path / "a.tiles")
 

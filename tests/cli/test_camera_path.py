@@ -46,6 +46,7 @@ def test_a_cluster_gives_the_same_pictures(voxrt, house):
     [
         ({}, "path.json: is not a list of cameras"),
         ([], "path.json: is not a list of cameras"),
+        ([{}] * 65_537, "path.json: has 65,537 cameras; render at most 65,536 at once"),
         ([1], "path.json: camera 0: is not an object"),
         ([{"where": [1, 2, 3]}], "path.json: camera 0: is not an object"),
         ([{}, {"look": [1, 2]}], "path.json: camera 1: look must be three numbers"),

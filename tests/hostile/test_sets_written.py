@@ -106,6 +106,27 @@ def test_a_set_is_old_where_its_last_file_cannot_be_written(tmp_path):
     assert (first.read_bytes(), names(tmp_path)) == (b"old", ["first", "second"])
 
 
+def test_what_is_removed_is_the_link_and_not_what_it_leads_to(tmp_path):
+    kept, link, first = (tmp_path / name for name in ("kept", "link", "first"))
+    kept.write_bytes(b"mine")
+    link.symlink_to(kept)
+    write_together({first: b"new", link: None})
+    assert (kept.read_bytes(), names(tmp_path)) == (b"mine", ["first", "kept"])
+
+
+def test_the_files_of_a_core_replace_no_others(voxrt, folder):
+    voxrt.succeeds("build", "house.obj", "--depth", 4)
+    out = folder / "out"
+    out.mkdir()
+    (out / "bank_00.hex").write_text("1007\n1007\n")  # as another configuration leaves it
+    (out / "bank_01.hex").write_text("my notes\n")
+    (folder / "kept").write_text("1007\n")
+    (out / "bank_02.hex").symlink_to(folder / "kept")
+    voxrt.succeeds("convert", "house.mem", "out", "--form", "core")
+    assert names(out) == ["bank_01.hex", "bank_02.hex", "boot.hex", "octree.hex", "scene.h"]
+    assert (folder / "kept").read_text() == "1007\n"
+
+
 def test_a_set_is_old_where_a_renaming_fails(tmp_path, monkeypatch):
     first, second, third = (tmp_path / name for name in ("first", "second", "third"))
     first.write_bytes(b"old")

@@ -6,8 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from voxrt.voxelize.errors import DoesNotFitError
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+_FREE_CORNERS = 1000
+_MOST_WORK = 4_000_000_000
+"""Cutting concave polygons takes time by the squares of their corners: those of all that have more than the free
+corners, together. One polygon of 63,000 corners takes some ten seconds."""
 
 
 def triangulate(
@@ -17,9 +24,10 @@ def triangulate(
 
     A concave quadrilateral is cut at its reflex corner; a concave polygon of more corners is cut in its plane (the
     Newell normal's dominant axis dropped, so coordinates stay exact). Polygons should be planar; one without area is
-    cut as a fan. `counts` are the corners per polygon, each at least 3, and `corners` rows of `positions` (float64,
-    shape (V, 3), finite where used), polygon after polygon. Return the triangles (int32, shape (T, 3), rows of
-    `positions`) and the polygon of each (int64, shape (T,)).
+    cut as a fan. DoesNotFitError where concave polygons have so many corners that it would take long. `counts` are the
+    corners per polygon, each at least 3, and `corners` rows of `positions` (float64, shape (V, 3), finite where used),
+    polygon after polygon. Return the triangles (int32, shape (T, 3), rows of `positions`) and the polygon of each
+    (int64, shape (T,)).
     """
     triangles, faces = triangulate_corners(positions, counts, corners)
     return np.asarray(corners)[triangles].astype(np.int32, copy=False), faces
@@ -39,6 +47,12 @@ def triangulate_corners(
     anchor, reflex = _fan_anchors(positions, counts, starts, corners)
     wrapped = (anchor[faces, None] + np.stack([np.zeros_like(step), step + 1, step + 2], axis=1)) % counts[faces, None]
     triangles = starts[faces, None] + wrapped
+    sizes = np.array([counts[face] for face, _ in reflex], np.float64)
+    if (sizes[sizes > _FREE_CORNERS] ** 2).sum() > _MOST_WORK:
+        raise DoesNotFitError(
+            f"its concave polygons have too many corners to cut them into triangles (one has {int(sizes.max()):,}); "
+            "export it as triangles"
+        )
     for face, normal in reflex:
         begin, count = starts[face], counts[face]
         cut = _cut_in_plane(positions[corners[begin : begin + count]], normal)

@@ -6,6 +6,7 @@ contents, and for programs in C. ``docs/first_frame.md`` is the reference.
 
 from __future__ import annotations
 
+import re
 import textwrap
 from typing import TYPE_CHECKING
 
@@ -19,6 +20,8 @@ from voxrt.octree import coarsen
 from voxrt.voxelize import DoesNotFitError
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from numpy.typing import NDArray
 
     from voxrt.board.register_writes import Writes
@@ -35,8 +38,17 @@ _PRIVATE, _BANKED, _CACHED = range(3)  # MemoryForm
 _BANKS = 16
 _FIRST_WORD = 7  # of an external memory: word 0 is the last of its line
 _OCTREE, _TOP, _BANK_FILES = "octree.hex", "top.hex", tuple(f"bank_{number:02d}.hex" for number in range(_BANKS))
+_ROWS = re.compile(rb"([0-9a-f]{3,8}\n)+[0-9a-f]{0,8}")
 MEMORY_FILES = (_OCTREE, _TOP, *_BANK_FILES)
 """The contents of block RAMs, in any form of memory."""
+
+
+def is_memory_file(path: Path) -> bool:
+    """Tell whether a file has the form of those of :data:`MEMORY_FILES`: rows of hexadecimal digits. Links have not."""
+    if path.is_symlink() or not path.is_file():
+        return False
+    with path.open("rb") as file:
+        return _ROWS.fullmatch(file.read(4096)) is not None
 
 
 def check_fit(rom: Rom, configuration: Configuration) -> None:

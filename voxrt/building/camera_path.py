@@ -12,7 +12,7 @@ from voxrt.errors import ToolError
 from voxrt.plans.open_workers import open_workers
 from voxrt.plans.workers import in_order
 from voxrt.views.pictures import render
-from voxrt.views.viewpoint import ViewpointError, aim_camera
+from voxrt.views.viewpoint import CameraAim, ViewpointError
 
 if TYPE_CHECKING:
     import os
@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from voxrt.options.render_options import RenderOptions
     from voxrt.sim import Frame
 
-_MOST_CAMERAS = 1 << 20
+_MOST_CAMERAS = 1 << 16  # 36 minutes of 30 pictures a second
+_MOST_BYTES = 1 << 26
 _KEYS = {"position", "look", "right", "up"}
 
 
@@ -61,14 +62,21 @@ def read_cameras(path: str | os.PathLike[str], rom: Rom, size: tuple[int, int]) 
     2
     """
     try:
-        entries = json.loads(Path(path).read_text(encoding="utf-8"))
+        with Path(path).open("rb") as file:
+            data = file.read(_MOST_BYTES + 1)
+        if len(data) > _MOST_BYTES:
+            raise ViewpointError(f"{path}: is no path of cameras: it has more than {_MOST_BYTES >> 20} MiB")
+        entries = json.loads(data.decode())
     except OSError as error:
         raise ViewpointError(f"{path}: cannot be read: {error.strerror}") from None
     except (ValueError, RecursionError) as error:
         raise ViewpointError(f"{path}: is not JSON: {error}") from None
-    if not isinstance(entries, list) or not 1 <= len(entries) <= _MOST_CAMERAS:
+    if not isinstance(entries, list) or not entries:
         raise ViewpointError(f'{path}: is not a list of cameras; write [{{"position": [x, y, z], ...}}, ...]')
-    return [_camera(f"{path}: camera {number}", one, rom, size) for number, one in enumerate(entries)]
+    if len(entries) > _MOST_CAMERAS:
+        raise ViewpointError(f"{path}: has {len(entries):,} cameras; render at most {_MOST_CAMERAS:,} at once")
+    aim = CameraAim(rom, size)
+    return [_camera(f"{path}: camera {number}", one, aim) for number, one in enumerate(entries)]
 
 
 def take_picture(job: PictureJob, number: int, camera: Camera) -> PathPicture:
@@ -93,7 +101,7 @@ def take_pictures(
         yield from in_order(found.completed(take_picture, list(enumerate(cameras)), (job,)))
 
 
-def _camera(where: str, entry: object, rom: Rom, size: tuple[int, int]) -> Camera:
+def _camera(where: str, entry: object, aim: CameraAim) -> Camera:
     if not isinstance(entry, dict) or not entry.keys() <= _KEYS:
         raise ViewpointError(f"{where}: is not an object with position, look, right and up alone")
     for name, value in entry.items():
@@ -106,7 +114,7 @@ def _camera(where: str, entry: object, rom: Rom, size: tuple[int, int]) -> Camer
         if position is not None:
             position = tuple(round(16 * one) for one in position)
         look, right, up = (None if name not in entry else _register(entry[name]) for name in ("look", "right", "up"))
-        return aim_camera(rom, size, position=position, look=look, right=right, up=up)
+        return aim.camera(position=position, look=look, right=right, up=up)
     except (ValueError, TypeError, OverflowError) as error:
         raise ViewpointError(f"{where}: {error}") from None
 

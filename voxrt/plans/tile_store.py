@@ -2,12 +2,13 @@
 
 A tile is the octree of a square of columns, as words of the whole world, and what the square has of each object. Its
 file ends with its CRC-32. The folder has the key of the build: of what decides the voxels, and of the program. Tiles of
-another key are removed.
+another key are removed, and no other files. A folder without such a key, or that is a link, is somebody else's.
 """
 
 from __future__ import annotations
 
 import os
+import re
 import struct
 import zlib
 from contextlib import suppress
@@ -38,6 +39,8 @@ if TYPE_CHECKING:
 _HEADER = struct.Struct("<8s16sIIqq")  # magic, key, depth, 0, words, rows of tallies
 _MAGIC = b"voxrtil2"
 _CRC32 = struct.Struct("<I")
+_KEY = re.compile(rb"(?P<key>[0-9a-f]{32}) (?P<side>[0-9]{1,6})\n")
+_TEMPORARY = re.compile(r"\.(?:key|[0-9]+-[0-9]+\.tile)\.[0-9a-f]{8}\.tmp")  # as write_atomically names them
 _TALLIES = 5  # numbers per row: the object, and its tally
 _BYTES_OF_BLOCK = 32
 
@@ -180,11 +183,11 @@ class TileStore:
     ) -> None:
         if self._lock is None:
             return
-        self.words.unlink(missing_ok=True)
+        self.words.unlink(missing_ok=True)  # the lock was taken: the folder is that of a build
         if kind is None or issubclass(kind, AssetError | DoesNotFitError):
             self._remove()
         else:
-            for path in self.folder.glob(".*.tmp"):
+            for path in self._temporary_files():
                 path.unlink(missing_ok=True)
         _locks.discard(self._lock)
         os.close(self._lock)
@@ -198,8 +201,10 @@ class TileStore:
         """
         self.key = key
         try:
+            if self.folder.is_symlink():
+                raise self._refused("is a link to another folder")
             self.folder.mkdir(parents=True, exist_ok=True)
-            lock = os.open(self.folder, os.O_RDONLY)
+            lock = os.open(self.folder, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0))
         except OSError as error:
             raise self._refused(f"cannot be used: {error.strerror or error}") from error
         try:
@@ -265,10 +270,10 @@ class TileStore:
             except OSError:
                 raise self._refused("another build uses it") from None
         try:
-            there = self._key_file.read_text("ascii", "replace").split() if self._key_file.is_file() else []
-            if len(there) == 2 and there[0] == self.key and there[1].isdecimal() and int(there[1]) <= 2 * side:
-                return int(there[1])
-            if not self._key_file.is_file() and any(self.folder.iterdir()):
+            there = _KEY.fullmatch(_first_bytes(self._key_file, 64))
+            if there and there["key"].decode() == self.key and int(there["side"]) <= 2 * side:
+                return int(there["side"])
+            if not there and any(self.folder.iterdir()):
                 raise self._refused("has files that no build put there")
             for path in self._own_files():
                 path.unlink(missing_ok=True)
@@ -287,11 +292,23 @@ class TileStore:
             self.folder.rmdir()
 
     def _own_files(self) -> list[Path]:
-        return [*self.folder.glob("*.tile"), *self.folder.glob(".*.tmp"), self.words, self._key_file]
+        tiles = [path for path in self.folder.glob("*.tile") if _first_bytes(path, len(_MAGIC)) == _MAGIC]
+        return [*tiles, *self._temporary_files(), self.words, self._key_file]
+
+    def _temporary_files(self) -> list[Path]:
+        return [path for path in self.folder.glob(".*.tmp") if _TEMPORARY.fullmatch(path.name)]
 
     @property
     def _key_file(self) -> Path:
         return self.folder / "key"
+
+
+def _first_bytes(path: Path, count: int) -> bytes:
+    """Return the first bytes of a regular file, and none of anything else."""
+    if path.is_symlink() or not path.is_file():
+        return b""
+    with path.open("rb") as file:
+        return file.read(count)
 
 
 def _unwritten(path: Path, error: OSError) -> OutputError:

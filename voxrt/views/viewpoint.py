@@ -7,6 +7,7 @@ fits the picture exactly.
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -81,27 +82,56 @@ def aim_camera(
     >>> aim_camera(rom, (64, 48), position=(128, 128, 800), look=(0, 0, -1)).look[:2]
     (0, 0)
     """
-    instance("rom", rom, Rom)
-    width, height = whole_array("size", size, (2,), np.int64, low=1, high=1 << 14).tolist()
-    size = (width, height)
-    position = _triple("position", position, 1 << 31)
-    look, right, up = _triple("look", look), _triple("right", right), _triple("up", up)
-    if position is None and (look, right, up) == (None, None, None):
-        return sim.frame_scene(rom, size)
-    points = sim.outline(rom.octree)
-    if look is None or right is None or up is None:
-        sight = np.array(THREE_QUARTER)
-        if position is not None:
-            towards = (points.min(axis=0) + points.max(axis=0)) / 2 - np.array(position) / 16
-            sight = towards if towards.any() else sight
-        look, right, up = _complete(_sight(sight, look, right, up), size, look, right, up)
-    if position is None:
-        registers = np.array((look, right, up), np.float64)
-        if abs(np.linalg.det(registers)) < 1e-9:
-            raise ViewpointError("look, right and up lie in a plane; give --position as well, or other registers")
-        x, y, z = np.floor(16 * eye_that_sees(points, registers, size) + 0.5).astype(np.int64).tolist()
-        position = (x, y, z)
-    return Camera(position, look, right, up)
+    return CameraAim(rom, size).camera(position=position, look=look, right=right, up=up)
+
+
+class CameraAim:
+    """Completes cameras of one scene as :func:`aim_camera` does, and looks at the scene once for all of them."""
+
+    def __init__(self, rom: Rom, size: tuple[int, int]) -> None:
+        self._rom = instance("rom", rom, Rom)
+        width, height = whole_array("size", size, (2,), np.int64, low=1, high=1 << 14).tolist()
+        self._size = (width, height)
+
+    @cached_property
+    def _outline(self) -> NDArray[np.float64]:
+        return sim.outline(self._rom.octree)
+
+    @cached_property
+    def _centre(self) -> NDArray[np.float64]:
+        centre: NDArray[np.float64] = (self._outline.min(axis=0) + self._outline.max(axis=0)) / 2
+        return centre
+
+    @cached_property
+    def _whole_scene(self) -> Camera:
+        return sim.frame_points(self._outline, self._size)
+
+    def camera(
+        self,
+        *,
+        position: Triple | None = None,
+        look: Triple | None = None,
+        right: Triple | None = None,
+        up: Triple | None = None,
+    ) -> Camera:
+        """Complete a camera; :func:`aim_camera` says how, and which errors there are."""
+        position = _triple("position", position, 1 << 31)
+        look, right, up = _triple("look", look), _triple("right", right), _triple("up", up)
+        if position is None and (look, right, up) == (None, None, None):
+            return self._whole_scene
+        if look is None or right is None or up is None:
+            sight = np.array(THREE_QUARTER)
+            if position is not None:
+                towards = self._centre - np.array(position) / 16
+                sight = towards if towards.any() else sight
+            look, right, up = _complete(_sight(sight, look, right, up), self._size, look, right, up)
+        if position is None:
+            registers = np.array((look, right, up), np.float64)
+            if abs(np.linalg.det(registers)) < 1e-9:
+                raise ViewpointError("look, right and up lie in a plane; give --position as well, or other registers")
+            x, y, z = np.floor(16 * eye_that_sees(self._outline, registers, self._size) + 0.5).astype(np.int64).tolist()
+            position = (x, y, z)
+        return Camera(position, look, right, up)
 
 
 def authored_camera(viewpoint: Viewpoint, grid: Grid, size: tuple[int, int]) -> Camera:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 Path: TypeAlias = "tuple[str | int, ...]"
 
@@ -23,6 +23,42 @@ _STRING = re.compile(
     re.DOTALL,
 )
 _SCALAR = re.compile(r"[^,\]}#\n]+")
+
+
+_STRING_OR_REST = (
+    r'"""(?:[^\\]|\\(?:.|\Z))*?(?:"{3,5}(?!")|\Z)'  # what is not closed goes on to the end
+    r"|'''.*?(?:'{3,5}(?!')|\Z)"
+    r'|"(?:[^"\\\n]|\\.)*(?:"|$|\Z)'
+    r"|'[^'\n]*(?:'|$|\Z)"
+)
+_TOKEN = re.compile(
+    rf"(?P<part>{_STRING_OR_REST}|[A-Za-z0-9_-]+)|(?P<dot>\.)|[ \t]+|(?P<other>#[^\n]*|.)", re.DOTALL | re.MULTILINE
+)
+
+
+class LongKey(NamedTuple):
+    """A dotted key: how many parts it has, and on which line, from 1."""
+
+    parts: int
+    line: int
+
+
+def longest_key(text: str) -> LongKey:
+    """Return the key of the most parts in a text that nobody has parsed yet; values count as keys."""
+    longest = start = at_longest = parts = 0
+    after_dot = False
+    for token in _TOKEN.finditer(text):
+        if token["part"]:
+            parts = parts + 1 if after_dot else 1
+            start = start if after_dot else token.start()
+            if parts > longest:
+                longest, at_longest = parts, start
+            after_dot = False
+        elif token["dot"]:
+            after_dot = True
+        elif token["other"]:
+            after_dot = False
+    return LongKey(longest, text.count("\n", 0, at_longest) + 1)
 
 
 def key_lines(text: str) -> dict[Path, int]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from voxrt.voxelize.authoring.scene_toml.positions import key_lines
+from voxrt.voxelize.authoring.scene_toml.positions import key_lines, longest_key
 from voxrt.voxelize.authoring.scene_toml.schema import SHAPES, File, MaterialEntry, Node
 from voxrt.voxelize.errors import AssetError
 
@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
 DEEPEST = 40
 """The most levels of shapes within shapes."""
+
+MOST_PARTS = DEEPEST + 8
+"""The most parts of a dotted key."""
 
 _UNKNOWN = re.compile(r"Object contains unknown field `(?P<key>.*)`")
 _AT = re.compile(r" - at `\$(?P<path>.*)`$")
@@ -43,6 +46,11 @@ class CheckedFile:
 
 def check_file(path: Path, text: str) -> CheckedFile:
     """Parse and check a scene file; raise AssetError where it is not TOML, or does not match the schema."""
+    longest = longest_key(text)
+    if longest.parts > MOST_PARTS:  # the library's memory grows with their square
+        raise AssetError(
+            path, f"a key has {longest.parts} parts", place=f"line {longest.line}", fix=f"use {MOST_PARTS} at most"
+        )
     try:
         raw = tomllib.loads(text)
         lines = key_lines(text)

@@ -52,7 +52,7 @@ def _write_core(source: Source, folder: Path, config: str | None, size: tuple[in
     from voxrt.board.errors import Refused  # noqa: PLC0415
     from voxrt.board.view import View  # noqa: PLC0415
     from voxrt.boards.board_scenes import board_scene  # noqa: PLC0415 - NumPy comes with it
-    from voxrt.boards.core_files import MEMORY_FILES, check_fit, core_files  # noqa: PLC0415
+    from voxrt.boards.core_files import MEMORY_FILES, check_fit, core_files, is_memory_file  # noqa: PLC0415
     from voxrt.export.atomic import write_together  # noqa: PLC0415
 
     lighting = source.blob.lighting or voxrt.Lighting()
@@ -65,7 +65,7 @@ def _write_core(source: Source, folder: Path, config: str | None, size: tuple[in
     except Refused as error:
         raise voxrt.ViewpointError(str(error)) from error
     files = {folder / name: data for name, data in made.items()}
-    stale = [folder / name for name in MEMORY_FILES if name not in made and (folder / name).is_file()]
+    stale = [folder / name for name in MEMORY_FILES if name not in made and is_memory_file(folder / name)]
     with writing(next(iter(files))):
         write_together({**files, **dict.fromkeys(stale)})
     return tuple(files)
