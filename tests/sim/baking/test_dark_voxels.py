@@ -1,9 +1,8 @@
 """No voxel with a face that is open to the sky is nearly black: crowded surfaces, and real scenes."""
 
 import numpy as np
-import pytest
-from oracles.meshes import icosphere
 from assets import asset, over_assets
+from oracles.meshes import icosphere
 
 import voxrt
 from voxrt.octree import material_at
