@@ -91,7 +91,7 @@ def bake_light(
     words, depth = rom.octree.words, rom.octree.depth
     corners, normals = surface_triangles(scene, rom.grid, geometry)
     surface = _bake.measure_surface(words, depth, corners, normals, threads)
-    points, *light = _bake.measure_light(
+    points, sun, sky, open_sky = _bake.measure_light(
         words,
         depth,
         surface.brick_codes,
@@ -103,7 +103,7 @@ def bake_light(
         daylight.samples,
         threads,
     )
-    lit = _bake.light_voxels(points, surface.cells, *light, _fields(rom), daylight.sun, daylight.sky)
+    lit = _bake.light_voxels(points, surface.cells, sun, sky, open_sky, _fields(rom), daylight.sun, daylight.sky)
     rows = lit.rows.astype(np.int64)
     voxels = positions(surface.brick_codes[rows >> 9].astype(np.int64) << 9 | rows & 511)
     return BakedLight(rom, voxels, lit.sun, lit.sky, lit.colours, surface, lit.rows)
