@@ -164,6 +164,17 @@ def test_links_to_folders_of_others_are_not_followed(ball, tmp_path):
     assert (other / "key").read_bytes() == b"0" * 32 + b" 128\n"
 
 
+def test_a_build_at_once_removes_the_tiles_of_one_that_was_killed(ball, at_once, tmp_path):
+    run(tmp_path, 9, moment=5)
+    assert (tmp_path / "ball.tiles").exists()
+    (tmp_path / "ball.tiles" / "map-1.tile").write_text("mine")
+    voxrt.build(ball, tmp_path / "ball.mem", depth=DEPTH, memory=1 << 40)
+    assert words_of(tmp_path) == at_once
+    assert left(tmp_path / "ball.tiles") == ["map-1.tile"]
+    voxrt.build(ball, tmp_path / "ball.mem", depth=DEPTH, memory=1 << 40)
+    assert left(tmp_path / "ball.tiles") == ["map-1.tile"]
+
+
 def test_files_of_others_in_the_folder_of_a_build_stay(ball, at_once, tmp_path):
     run(tmp_path, 9, moment=5)
     folder = tmp_path / "ball.tiles"

@@ -182,6 +182,8 @@ class TileStore:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         if self._lock is None:
+            if kind is None:
+                self._remove_forgotten()
             return
         self.words.unlink(missing_ok=True)  # the lock was taken: the folder is that of a build
         if kind is None or issubclass(kind, AssetError | DoesNotFitError):
@@ -290,6 +292,18 @@ class TileStore:
             path.unlink(missing_ok=True)
         with suppress(OSError):  # somebody else put a file there
             self.folder.rmdir()
+
+    def _remove_forgotten(self) -> None:
+        """Remove the tiles that a killed build left for an output which is complete now, made without them."""
+        with suppress(OSError):
+            lock = os.open(self.folder, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0))
+            try:
+                if fcntl is not None:
+                    fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                if _KEY.fullmatch(_first_bytes(self._key_file, 64)):
+                    self._remove()
+            finally:
+                os.close(lock)
 
     def _own_files(self) -> list[Path]:
         tiles = [path for path in self.folder.glob("*.tile") if _first_bytes(path, len(_MAGIC)) == _MAGIC]
