@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import sys
 from contextlib import suppress
@@ -107,6 +108,30 @@ def test_a_damaged_tile_is_made_anew(at_once, tmp_path):
     data[len(data) // 2] ^= 1
     tile.write_bytes(data)
     run(tmp_path)
+    assert words_of(tmp_path) == at_once
+
+
+FORGERIES = {
+    "an overlap": lambda tile: Tile(octree.Octree(DEPTH, np.full(1, 0xFFFFFF01, np.uint32)), tile.tallies),
+    "another world": lambda tile: Tile(octree.Octree(DEPTH - 1, tile.octree.words), tile.tallies),
+    "an object too many": lambda tile: Tile(tile.octree, np.array([[7, 1, 0, 0, 1]])),
+    "no object": lambda tile: Tile(tile.octree, np.array([[-1, 1, 0, 0, 1]])),
+    "negative counts": lambda tile: Tile(tile.octree, np.array([[0, -1, 0, 0, 1]])),
+}
+
+
+@pytest.mark.parametrize("kind", FORGERIES)
+def test_a_forged_tile_is_one_line_that_says_what_to_remove(ball, at_once, tmp_path, kind):
+    run(tmp_path, 9, moment=5)
+    folder = tmp_path / "ball.tiles"
+    key = (folder / "key").read_text().split()[0]
+    path = max(folder.glob("*.tile"), key=lambda one: one.stat().st_size)
+    write_tile(path, key, FORGERIES[kind](read_tile(path, key)))
+    for _ in range(2):
+        with pytest.raises(OutputError, match=r"not what its build writes; remove the folder of the tiles"):
+            voxrt.build(ball, tmp_path / "ball.mem", depth=DEPTH, memory=LITTLE)
+    shutil.rmtree(folder)
+    voxrt.build(ball, tmp_path / "ball.mem", depth=DEPTH, memory=LITTLE)
     assert words_of(tmp_path) == at_once
 
 
