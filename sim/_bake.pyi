@@ -42,6 +42,18 @@ def place_triangles(
     origin: tuple[float, float, float],
     voxel_size: float,
 ) -> tuple[NDArray[np.float64], NDArray[np.float32]]: ...
+def measure_light(
+    words: NDArray[np.uint32],
+    depth: int,
+    brick_codes: NDArray[np.uint64],
+    voxels: NDArray[np.uint64],
+    origins: NDArray[np.int32],
+    normals: NDArray[np.int16],
+    towards_sun: tuple[float, float, float],
+    sky_light: tuple[float, float, float],
+    samples: int,
+    threads: int,
+) -> tuple[NDArray[np.uint64], NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]: ...
 def light_voxels(
     points: NDArray[np.uint64],
     cells: NDArray[np.uint8],

@@ -1,4 +1,4 @@
-"""Pictures one after another: GIF by Pillow, MP4 by FFmpeg where imageio-ffmpeg brings it."""
+"""Pictures one after another: GIF and WebP by Pillow, MP4 by FFmpeg where imageio-ffmpeg brings it."""
 
 from __future__ import annotations
 
@@ -20,34 +20,38 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-ANIMATION_SUFFIXES = (".gif", ".mp4")
+ANIMATION_SUFFIXES = (".gif", ".webp", ".mp4")
 PICTURES_A_SECOND = 20
 
+_QUALITY, _EFFORT = 90, 2  # of WebP: more effort takes minutes
 _FEW_COLOURS = 255
 _PALETTE_PICTURES = 8  # of an animation that give its palette
 
 
-def write_animation(path: Path, pictures: Iterable[NDArray[np.uint8]]) -> None:
-    """Write pictures as an animation that plays for ever (GIF) or once (MP4), :data:`PICTURES_A_SECOND`.
+def write_animation(path: Path, pictures: Iterable[NDArray[np.uint8]], period: float | None = None) -> None:
+    """Write pictures as an animation that plays for ever (GIF, WebP) or once (MP4).
 
-    They are uint8, shape (H, W, 3), sRGB, one or more, all of one size; for MP4 of even sides. ViewerError for MP4
-    without imageio-ffmpeg; OSError where the file cannot be written.
+    They are uint8, shape (H, W, 3), sRGB, one or more, all of one size; for MP4 of even sides. `period` is the seconds
+    from one to the next, in steps of 1/100; None for that of :data:`PICTURES_A_SECOND`. ViewerError for MP4 without
+    imageio-ffmpeg; OSError where the file cannot be written.
     """
+    milliseconds = 1000 // PICTURES_A_SECOND if period is None else max(20, 10 * round(100 * period))
     if path.suffix.lower() == ".mp4":
-        _write_mp4(path, pictures)
-        return
-    write_gif(path, pictures)
+        _write_mp4(path, pictures, milliseconds)
+    elif path.suffix.lower() == ".webp":
+        first, *others = [Image.fromarray(picture) for picture in pictures]
+        encoded = io.BytesIO()
+        shared = {"quality": _QUALITY, "method": _EFFORT, "duration": milliseconds, "loop": 0}
+        first.save(encoded, "WEBP", save_all=True, append_images=others, **shared)
+        write_atomically(path, encoded.getvalue())
+    else:
+        _write_gif(path, pictures, milliseconds)
 
 
-def write_gif(path: Path, pictures: Iterable[NDArray[np.uint8]], period: float | None = None) -> None:
-    """Write pictures, as for :func:`write_animation`, as a GIF that plays for ever.
-
-    `period` is the seconds from one to the next, in steps of 1/100; None for that of :data:`PICTURES_A_SECOND`.
-    """
+def _write_gif(path: Path, pictures: Iterable[NDArray[np.uint8]], milliseconds: int) -> None:
     images = [Image.fromarray(picture) for picture in pictures]
     palette = _palette(images)
     frames = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in images]
-    milliseconds = 1000 // PICTURES_A_SECOND if period is None else max(20, 10 * round(100 * period))
     encoded = io.BytesIO()
     frames[0].save(encoded, "GIF", save_all=True, append_images=frames[1:], duration=milliseconds, loop=0)
     write_atomically(path, encoded.getvalue())
@@ -75,7 +79,7 @@ def _palette(images: list[Image.Image]) -> Image.Image:
     return strip.quantize(_FEW_COLOURS, method=Image.Quantize.MEDIANCUT)
 
 
-def _write_mp4(path: Path, pictures: Iterable[NDArray[np.uint8]]) -> None:
+def _write_mp4(path: Path, pictures: Iterable[NDArray[np.uint8]], milliseconds: int) -> None:
     try:
         ffmpeg = import_module("imageio_ffmpeg")
     except ImportError as error:
@@ -84,7 +88,18 @@ def _write_mp4(path: Path, pictures: Iterable[NDArray[np.uint8]]) -> None:
         ) from error
     first, *others = pictures
     height, width = first.shape[:2]
-    pixels = ("-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}", "-r", str(PICTURES_A_SECOND), "-i", "-")
+    pixels = (
+        "-f",
+        "rawvideo",
+        "-pix_fmt",
+        "rgb24",
+        "-s",
+        f"{width}x{height}",
+        "-r",
+        f"{1000 / milliseconds:g}",
+        "-i",
+        "-",
+    )
     coded = ("-an", "-c:v", "libx264", "-crf", "10", "-pix_fmt", "yuv420p")
     with tempfile.TemporaryDirectory(prefix="voxrt-") as folder:
         film = Path(folder, "turntable.mp4")  # FFmpeg goes back in an MP4, so it cannot write to a pipe

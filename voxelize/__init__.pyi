@@ -25,6 +25,8 @@ from voxrt.voxelize.materials import MATERIAL_LIMIT as MATERIAL_LIMIT
 from voxrt.voxelize.materials import Material as Material
 from voxrt.voxelize.mesh import MaterialMap as MaterialMap
 from voxrt.voxelize.mesh import Mesh as Mesh
+from voxrt.voxelize.placed_points import place_points as place_points
+from voxrt.voxelize.point_cloud import PointCloud as PointCloud
 from voxrt.voxelize.scene import PointLight as PointLight
 from voxrt.voxelize.scene import Scene as Scene
 from voxrt.voxelize.scene import SceneObject as SceneObject

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from voxrt.voxelize import arguments
 from voxrt.voxelize.errors import AssetError, DoesNotFitError, SceneWarning
+from voxrt.voxelize.point_cloud import MOST_POINTS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,7 +32,7 @@ _LOADERS = {
     ".usda": ("voxrt.voxelize.formats.usd.isolated", "read_isolated", _OF_USD),
     ".usdc": ("voxrt.voxelize.formats.usd.isolated", "read_isolated", _OF_USD),
     ".usdz": ("voxrt.voxelize.formats.usd.isolated", "read_isolated", _OF_USD),
-    ".toml": ("voxrt.voxelize.authoring.scene_toml", "load_scene_toml", {"allow_outside", "opaque_from"}),
+    ".toml": ("voxrt.voxelize.authoring.scene_toml", "load_scene_toml", {"allow_outside", "opaque_from", "points"}),
     ".obj": ("voxrt.voxelize.formats.obj", "load_obj", {"up", "unit", "allow_outside", "opaque_from"}),
     ".stl": ("voxrt.voxelize.formats.stl.load", "load_stl", {"up", "unit"}),
     ".off": ("voxrt.voxelize.formats.by_trimesh", "load_off", {"up", "unit"}),
@@ -40,7 +41,10 @@ _LOADERS = {
     ".step": ("voxrt.voxelize.formats.by_trimesh", "load_step", {"opaque_from"}),
     ".stp": ("voxrt.voxelize.formats.by_trimesh", "load_step", {"opaque_from"}),
     ".vox": ("voxrt.voxelize.formats.vox.scene", "load_vox_scene", {"unit", "time"}),
-    ".ply": ("voxrt.voxelize.formats.ply", "load_ply", {"up", "unit", "allow_outside", "opaque_from"}),
+    ".ply": ("voxrt.voxelize.formats.ply", "load_ply", {"up", "unit", "allow_outside", "opaque_from", "points"}),
+    ".xyz": ("voxrt.voxelize.formats.points", "load_xyz", {"up", "unit", "points"}),
+    ".las": ("voxrt.voxelize.formats.points", "load_las", {"points"}),
+    ".laz": ("voxrt.voxelize.formats.points", "load_las", {"points"}),
 }
 
 SUFFIXES = tuple(_LOADERS)
@@ -55,6 +59,7 @@ _WHY_IGNORED = {
     "animation": "the animation's name was ignored: {} files have no named animations",
     "variants": "variants were ignored: {} files have none",
     "opaque_from": "--opaque-from was ignored: {} files have no opacity",
+    "points": "--points was ignored: {} files have no points",
 }
 
 
@@ -67,6 +72,7 @@ def load(
     animation: str | None = None,
     variants: Sequence[str] = (),
     opaque_from: float | None = None,
+    points: int | None = None,
     allow_outside: bool = False,
 ) -> Scene:
     r"""Read an asset file into a scene (right-handed, metres, y up).
@@ -76,10 +82,9 @@ def load(
     Parameters
     ----------
     path
-        A ``.gltf``, ``.glb``, ``.obj``, ``.stl``, ``.ply``, ``.usd``, ``.usda``, ``.usdc`` or ``.usdz`` file, or a
-        ``.toml`` scene file. The case of the suffix does not matter.
+        A file whose suffix is one of :data:`SUFFIXES`; the case of the suffix does not matter.
     up
-        The file's up axis, for formats that do not define it; None for z with STL, for y with OBJ and PLY.
+        The file's up axis, for formats that do not define it; None for z with STL and XYZ, for y with OBJ and PLY.
     unit
         Metres per unit of the file, for the same formats; None for 1.
     time
@@ -91,6 +96,8 @@ def load(
     opaque_from
         Surfaces of lower opacity are left out, 0 … 1, for formats with opacity (glTF, OBJ, PLY, USD); None for 0.5. The
         alpha cutoff or the opacity threshold that an author gave a material decides in its place.
+    points
+        How many points of a point cloud make a voxel solid, for formats with points (PLY, XYZ, LAS); None for 1.
     allow_outside
         Whether files that the asset names may stand outside its folder and the folders below.
 
@@ -124,6 +131,8 @@ def load(
         raise TypeError(f"path must be a string or a Path, not {arguments.shown(path)}")
     path = Path(path)
     chosen = _checked(up=up, unit=unit, time=time, animation=animation, variants=variants, opaque_from=opaque_from)
+    if points is not None:
+        chosen["points"] = arguments.whole("points", points, 1, MOST_POINTS)
     allow_outside = arguments.flag("allow_outside", allow_outside)
     suffix = _suffix(path)
     module, name, options_of = _LOADERS[suffix]

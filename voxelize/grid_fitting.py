@@ -147,7 +147,9 @@ def _clouds(scene: Scene, geometry: Geometry) -> list[_native.Cloud]:
     for item in scene.objects:
         colliders = proxies(item, geometry)
         mesh = item.mesh
-        if colliders is None and len(mesh.triangles):
+        if colliders is None and item.points is not None:
+            place(item.points, lambda one=item.points: (one.positions, _NO_TRIANGLES), item.transform)  # type: ignore[misc]
+        elif colliders is None and len(mesh.triangles):
             place(mesh, lambda mesh=mesh: (mesh.positions, mesh.triangles), item.transform)  # type: ignore[misc]
         for collider in colliders or ():
             bare = lambda one=collider: (bounding_points(one), _NO_TRIANGLES)  # noqa: E731 - its type is known

@@ -18,14 +18,14 @@ GEOMETRIES: tuple[Geometry, ...] = ("auto", "render", "collider")
 
 
 def proxies(item: SceneObject, geometry: Geometry) -> tuple[Collider, ...] | None:
-    """Return the colliders that represent an object, or None where its triangles are voxelized.
+    """Return the colliders that represent an object, or None where its triangles or its points are voxelized.
 
     With ``"collider"``, an object without colliders gets the box of its mesh, in its own frame, unless others represent
-    it.
+    it. Points stay points.
     """
     if item.hidden:
         return item.colliders if geometry == "collider" else ()
-    if geometry == "render" or (geometry == "auto" and not item.colliders):
+    if geometry == "render" or (not item.colliders and (geometry == "auto" or item.points is not None)):
         return None
     if item.colliders or item.represented or len(item.mesh.triangles) == 0:
         return item.colliders

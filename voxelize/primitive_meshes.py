@@ -17,6 +17,12 @@ the circle."""
 
 _AXES = {"X": 0, "Y": 1, "Z": 2}
 
+VOXEL_MARK = np.array([[0.25, 0.25, 0.25], [0.75, 0.75, 0.25], [0.75, 0.25, 0.75], [0.25, 0.75, 0.75]])
+"""float64, shape (4, 3): the corners of a tetrahedron in the middle of a voxel, which meets that voxel alone."""
+
+VOXEL_MARK_TRIANGLES = np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]], np.int32)
+"""int32, shape (4, 3): its faces, counter-clockwise seen from outside."""
+
 
 def cube(size: float) -> Surface:
     """Return a cube of side `size` about the origin."""

@@ -13,7 +13,8 @@ import numpy as np
 from voxrt.voxelize import arguments
 from voxrt.voxelize.collider_shapes import BoxCollider, Collider, HullCollider, MeshCollider, SphereCollider
 from voxrt.voxelize.materials import MATERIAL_LIMIT, Material
-from voxrt.voxelize.mesh import Mesh
+from voxrt.voxelize.mesh import NO_TRIANGLES, Mesh
+from voxrt.voxelize.point_cloud import PointCloud
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -30,7 +31,8 @@ class SceneObject:
     name
         The author's name, with the path in the file where names repeat.
     mesh
-        Its triangles; instances of one mesh hold the same value.
+        Its triangles; instances of one mesh hold the same value. Without triangles for an object of points or of
+        colliders alone.
     transform
         float64, shape (4, 4), affine, column vectors: object frame to scene frame. May mirror.
     colliders
@@ -41,6 +43,9 @@ class SceneObject:
         Whether it is not shown: its colliders count with ``geometry="collider"`` alone, its triangles never.
     represented
         Whether other objects' colliders stand for it with ``geometry="collider"``: it needs none of its own.
+    points
+        Its points, which become voxels where it has no colliders; None for none. :func:`place_points` makes the mesh
+        that is voxelized in their place.
 
     Raises
     ------
@@ -55,12 +60,13 @@ class SceneObject:
     """
 
     name: str
-    mesh: Mesh
+    mesh: Mesh = NO_TRIANGLES
     transform: NDArray[np.float64] = field(default_factory=lambda: np.eye(4))
     colliders: tuple[Collider, ...] = ()
     collider_material: int = 1
     hidden: bool = False
     represented: bool = False
+    points: PointCloud | None = None
 
     def __post_init__(self) -> None:
         arguments.text("SceneObject.name", self.name)
@@ -73,6 +79,8 @@ class SceneObject:
             if not isinstance(one, (BoxCollider, SphereCollider, HullCollider, MeshCollider)):
                 raise TypeError(f"SceneObject.colliders[{index}] must be a collider, not {type(one).__name__}")
         material = arguments.whole("SceneObject.collider_material", self.collider_material, 1, MATERIAL_LIMIT)
+        if self.points is not None:
+            arguments.instance("SceneObject.points", self.points, PointCloud)
         object.__setattr__(self, "transform", transform.astype(np.float64, copy=False))
         object.__setattr__(self, "colliders", colliders)
         object.__setattr__(self, "collider_material", material)
@@ -80,7 +88,8 @@ class SceneObject:
         object.__setattr__(self, "represented", arguments.flag("SceneObject.represented", self.represented))
 
     def __repr__(self) -> str:
-        return f"SceneObject(name={self.name!r}, mesh={self.mesh!r}, colliders={len(self.colliders)})"
+        shape = f"mesh={self.mesh!r}" if self.points is None else f"points={self.points!r}"
+        return f"SceneObject(name={self.name!r}, {shape}, colliders={len(self.colliders)})"
 
 
 _AFFINE_TOLERANCE = 1e-6

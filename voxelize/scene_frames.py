@@ -141,6 +141,7 @@ def join_scenes(scenes: Iterable[Scene]) -> SceneFrames:
                 replace(
                     item,
                     mesh=meshes[id(item.mesh)],
+                    points=_kept(item.points, known),
                     colliders=tuple(_kept(one, known) for one in item.colliders),
                     collider_material=int(ids[item.collider_material]) if item.colliders else 1,
                 )
@@ -239,6 +240,7 @@ def _extent(mesh: Mesh) -> float:
 def _same_objects(some: tuple[SceneObject, ...], others: tuple[SceneObject, ...]) -> bool:
     return len(some) == len(others) and all(
         one.mesh is other.mesh
+        and one.points is other.points
         and one.hidden == other.hidden
         and np.array_equal(one.transform, other.transform)
         and one.colliders == other.colliders

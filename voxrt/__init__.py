@@ -6,7 +6,7 @@ Each public name is imported when it is first used, so ``import voxrt`` and ``vo
 
     result = voxrt.build("courtyard.glb", "out", depth=7, preview="out/courtyard.png")
     rom, warnings = voxrt.read_rom("out/courtyard.mem")
-    frame = voxrt.render(rom, size=(640, 480), engine="model")
+    frame = voxrt.render(rom, size=(640, 480))
 
 The stages behind it are packages of their own: :mod:`voxrt.voxelize`, :mod:`voxrt.octree`, :mod:`voxrt.export`,
 :mod:`voxrt.sim`, :mod:`voxrt.view`.

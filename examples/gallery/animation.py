@@ -58,7 +58,7 @@ plt.tight_layout()
 # One camera for all of them: the ball stays in the picture. The film is also a GIF file.
 size = (240, 180)
 camera = voxrt.animation_camera(built.blob, size)
-pictures = [voxrt.render(built.rom, camera, size=size, engine="model", root=root).colour for root in animation.roots]
+pictures = [voxrt.render(built.rom, camera, size=size, root=root).colour for root in animation.roots]
 with TemporaryDirectory() as folder:
     file = Path(folder, "jump.gif")
     voxrt.save_animation(pictures, file, period=0.08)

@@ -35,7 +35,7 @@ print(f"{len(coarse.words):,} words: one level less changes {changed:.1f} %, fit
 size = (320, 320)
 camera = voxrt.aim_camera(whole.rom, size)
 plain = octree.Rom("coarser", coarse, whole.rom.materials)
-frames = [voxrt.render(rom, camera, size=size, engine="model") for rom in (whole.rom, fitted.rom, plain)]
+frames = [voxrt.render(rom, camera, size=size) for rom in (whole.rom, fitted.rom, plain)]
 picture = np.concatenate([frame.colour for frame in frames], axis=1)
 plt.figure(figsize=(9.6, 3.2))
 plt.imshow(picture)

@@ -91,13 +91,19 @@ def bake_light(
     words, depth = rom.octree.words, rom.octree.depth
     corners, normals = surface_triangles(scene, rom.grid, geometry)
     surface = _bake.measure_surface(words, depth, corners, normals, threads)
-    sun, sky = (
-        _bake.receive_light(words, depth, surface.origins, surface.normals, one.steps, one.units, one.weights, threads)
-        for one in (_bake.sun_direction(daylight.sun), _bake.sky_directions(daylight.samples))
+    points, *light = _bake.measure_light(
+        words,
+        depth,
+        surface.brick_codes,
+        surface.voxels,
+        surface.origins,
+        surface.normals,
+        daylight.sun,
+        daylight.sky,
+        daylight.samples,
+        threads,
     )
-    lit = _bake.light_voxels(
-        surface.voxels, surface.cells, sun.received, sky.received, sky.full, _fields(rom), daylight.sun, daylight.sky
-    )
+    lit = _bake.light_voxels(points, surface.cells, *light, _fields(rom), daylight.sun, daylight.sky)
     rows = lit.rows.astype(np.int64)
     voxels = positions(surface.brick_codes[rows >> 9].astype(np.int64) << 9 | rows & 511)
     return BakedLight(rom, voxels, lit.sun, lit.sky, lit.colours, surface, lit.rows)

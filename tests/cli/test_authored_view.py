@@ -35,8 +35,11 @@ def yard(tmp_path):
     return path
 
 
+AS_IT_IS = {"samples": 1}  # a preview like the picture of the memory, whose background the author chose
+
+
 def test_the_preview_has_the_light(yard, tmp_path):
-    lit = voxrt.build(yard, tmp_path, depth=5, preview=True, size=SIZE)
+    lit = voxrt.build(yard, tmp_path, depth=5, preview=True, size=SIZE, **AS_IT_IS)
     assert lit.warnings == ()
     origin, voxel = np.array(lit.rom.grid.origin), lit.rom.grid.voxel_size
     place = tuple(int(x) for x in np.rint((np.array([4, 6, 1]) - origin) / voxel * 16))
@@ -44,7 +47,7 @@ def test_the_preview_has_the_light(yard, tmp_path):
     expected = render_frame(lit.rom, lit.preview.camera, SIZE, engine="model", lighting=Lighting(place, on=True))
     assert np.array_equal(lit.preview.frame.colour, expected.colour)
     yard.write_text(YARD.replace("[light]\nposition = [4, 6, 1]\n", ""))
-    plain = voxrt.build(yard, tmp_path, depth=5, preview=True, size=SIZE, engine="model")
+    plain = voxrt.build(yard, tmp_path, depth=5, preview=True, size=SIZE, **AS_IT_IS, engine="model")
     assert plain.lighting is None
     assert (plain.preview.frame.colour != expected.colour).any()
 
@@ -53,7 +56,7 @@ def test_the_preview_has_the_mirrors(yard, tmp_path):
     yard.write_text(
         YARD.replace("[150, 150, 160]", "[150, 150, 160], mirror = true").replace("[light]\nposition = [4, 6, 1]\n", "")
     )
-    built = voxrt.build(yard, tmp_path, depth=5, preview=True, size=SIZE)
+    built = voxrt.build(yard, tmp_path, depth=5, preview=True, size=SIZE, **AS_IT_IS)
     assert built.lighting == Lighting(bounces=4)
     expected = render_frame(built.rom, built.preview.camera, SIZE, engine="model", lighting=Lighting(bounces=4))
     assert np.array_equal(built.preview.frame.colour, expected.colour)

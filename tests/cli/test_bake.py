@@ -15,7 +15,7 @@ HOUSE = "examples/house.obj"
 
 
 def test_a_baked_memory_says_so_and_is_shown_flat(tmp_path):
-    built = voxrt.build(HOUSE, tmp_path, depth=5, bake=True, sky="#ffffff", preview=True, engine="model")
+    built = voxrt.build(HOUSE, tmp_path, depth=5, bake=True, sky="#ffffff", preview=True, samples=1, background="dark")
     manifest = read_manifest(built.outputs["manifest"])
     assert manifest.baked.sky == (1, 1, 1)
     assert manifest.baked.samples == 64

@@ -15,6 +15,7 @@ import pytest
 from PIL import Image
 
 from voxrt.cli.results.build_results import BuildReport
+from voxrt.options.notations import BACKGROUNDS
 from voxrt.voxelize import DEFAULT_COLOURS
 
 
@@ -47,9 +48,7 @@ def test_a_voxel_size_instead_of_a_depth(voxrt, folder):
 
 
 def test_json_is_all_that_stdout_gets_and_keeps_its_promise(process, folder):
-    finished = process.succeeds(
-        "build", "house.obj", "-o", "out", "--depth", "5", "--preview", "--engine", "model", "--json"
-    )
+    finished = process.succeeds("build", "house.obj", "-o", "out", "--depth", "5", "--preview", "--no-check", "--json")
     report = msgspec.json.decode(finished.out, type=BuildReport, strict=True)
     result = json.loads(finished.out)
     keys = {"outputs", "depth", "words", "blocks", "voxels", "materials", "warnings", "seconds", "render"}
@@ -65,7 +64,7 @@ def test_json_is_all_that_stdout_gets_and_keeps_its_promise(process, folder):
         "start", "load", "fit", "colour", "voxelize", "octree", "write", "preview", "rest",
     ]  # fmt: skip
     assert report.render is not None
-    assert report.render.rays == 640 * 480
+    assert report.render.rays == 16 * 640 * 480
     assert report.render.cycles is None
     assert report.render.words_per_ray is None
 
@@ -96,10 +95,11 @@ def test_preview_may_stand_before_the_asset_and_may_have_a_file(voxrt, folder):
 
 
 def test_the_preview_shows_the_scene(voxrt, folder):
-    assert voxrt("build", "house.obj", "--depth", "6", "--preview", "--engine", "model").code == 0
+    assert voxrt("build", "house.obj", "--depth", "6", "--preview", "--no-check").code == 0
     with Image.open(folder / "house.preview.png") as picture:
         pixels = np.asarray(picture)
-    tiles = (pixels[..., 0] > 2 * pixels[..., 2]) & (pixels[..., 0] > 100)
+    assert pixels[0, 0].tolist() == list(BACKGROUNDS["light"])
+    tiles = (pixels[..., 0] > 2.0 * pixels[..., 2]) & (pixels[..., 0] > 100)
     assert 0.03 < tiles.mean() < 0.5
     drawn = (pixels != pixels[0, 0]).any(axis=2)
     assert not drawn[0].any()

@@ -20,7 +20,7 @@ def built(voxrt, folder):
 def test_a_memory_is_like_its_source(voxrt, built):
     pytest.importorskip("open3d", exc_type=ImportError, reason="the extra voxrt-build[compare] is not installed")
     arguments = ("compare", "house.mem", "house.obj", "--size", "96x72")
-    finished = voxrt.succeeds(*arguments, "-o", "like.png", "--json")
+    finished = voxrt.succeeds(*arguments, "--check", "-o", "like.png", "--json")
     result = msgspec.json.decode(finished.out, type=CompareResult, strict=True)
     assert result.silhouette_iou is not None
     assert result.silhouette_iou > 0.9
@@ -30,7 +30,11 @@ def test_a_memory_is_like_its_source(voxrt, built):
     assert result.wrong_pixels == 0
     with Image.open(built / "like.png") as sheet:
         assert sheet.size == (4 * 96, 72)
-    assert "silhouette" in voxrt(*arguments).out
+    finished = voxrt(*arguments, "-o", "like.png")
+    assert "silhouette" in finished.out
+    assert "hardware" not in finished.out
+    with Image.open(built / "like.png") as sheet:
+        assert sheet.size == (3 * 96, 72)
 
 
 def test_a_finer_grid_is_liker(voxrt, built):

@@ -13,6 +13,7 @@ from PIL import Image
 from voxrt.cli.results.build_results import RenderResult
 
 MODEL = ("--engine", "model", "--size", "64x48")
+PLAIN = ("--samples", "1", "--background", "dark")
 
 
 def test_json(voxrt, built):
@@ -30,7 +31,7 @@ def test_json(voxrt, built):
 
 def test_the_picture_has_the_memorys_name_and_the_previews_pixels(voxrt, built):
     assert voxrt("render", "house.mem", *MODEL).code == 0
-    assert voxrt("build", "house.obj", "--depth", "5", *MODEL, "--preview").code == 0
+    assert voxrt("build", "house.obj", "--depth", "5", *MODEL, *PLAIN, "--preview").code == 0
     assert (built / "house.png").read_bytes() == (built / "house.preview.png").read_bytes()
 
 
@@ -76,11 +77,15 @@ def test_directions_out_of_range(voxrt):
 
 def test_an_installation_without_the_ray_tracer_says_the_way_out(voxrt, folder, monkeypatch):
     monkeypatch.setitem(sys.modules, "voxrt.sim._rtl", None)
-    for arguments in (("build", "house.obj", "--depth", "3", "--preview"), ("render", "house.mem")):
+    build = ("build", "house.obj", "--depth", "3", "--preview")
+    for arguments in ((*build, "--engine", "rtl"), ("render", "house.mem", "--engine", "rtl")):
         finished = voxrt.fails(5, "no verilated ray tracer", *arguments)
         assert "--engine model" in finished.error
     assert {"house.mem", "house.json"} <= {path.name for path in folder.iterdir()}
     assert not list(folder.glob("*.png"))
+    voxrt.fails(5, "no verilated ray tracer", *build, "--check")
+    assert (folder / "house.preview.png").exists()
+    assert "checked" not in voxrt.succeeds(*build).err
 
 
 @pytest.fixture
@@ -90,13 +95,29 @@ def ray_tracer():
 
 @pytest.mark.usefixtures("ray_tracer")
 def test_the_ray_tracer_counts_its_clocks(voxrt, built):
-    result = voxrt.json("render", "house.mem", "--size", "64x48")
-    assert result["engine"] == "rtl"
+    result = voxrt.json("render", "house.mem", "--size", "64x48", "--engine", "rtl")
+    for options in (["--config", "tiny"], ["--check"]):
+        assert voxrt.json("render", "house.mem", "--size", "64x48", *options)["engine"] == "rtl"
+    assert voxrt.json("render", "house.mem", "--size", "64x48")["engine"] == "model"
     assert result["cycles"] > result["rays"]
     assert result["cycles_per_pixel"] == pytest.approx(result["cycles"] / result["rays"])
     hardware = (built / "house.png").read_bytes()
     assert voxrt("render", "house.mem", *MODEL).code == 0
     assert (built / "house.png").read_bytes() == hardware
+
+
+@pytest.mark.usefixtures("ray_tracer", "folder")
+def test_a_preview_is_checked_where_that_is_quick(voxrt):
+    build = ("build", "house.obj", "--depth", "4", "--preview", "--size", "64x48")
+    checked = voxrt.json(*build)["check"]
+    assert (checked["pixels"], checked["wrong_pixels"]) == (64 * 48, 0)
+    assert checked["cycles_per_pixel"] > 1
+    assert "0 of 3,072 pixels differ" in voxrt.succeeds(*build).err
+    for options in (("--no-check",), ("--engine", "rtl"), ("--size", "2048x1536")):
+        assert voxrt.json(*build[: -2 if options[0] == "--size" else None], *options)["check"] is None
+    for options in (("--check", "--no-check"), ("--check",)):
+        arguments = build[:4] if len(options) == 1 else build
+        voxrt.fails(2, "--check", *arguments, *options)
 
 
 @pytest.mark.usefixtures("ray_tracer", "built")
@@ -119,6 +140,30 @@ def test_check_fails_where_the_engines_differ(voxrt, monkeypatch):
     assert finished.code == 5
     assert json.loads(finished.out)["wrong_pixels"] == 1
     assert "1 pixels differ" in finished.error
+
+
+@pytest.mark.usefixtures("built")
+def test_a_turntable_comes_around(voxrt, folder):
+    for suffix in ("gif", "webp"):
+        voxrt.succeeds("render", "house.mem", "--turntable", "--size", "48x36", "-o", f"turn.{suffix}")
+        with Image.open(folder / f"turn.{suffix}") as film:
+            assert (film.n_frames, film.size, film.info["loop"]) == (72, (48, 36), 0)
+            shown = []
+            for number in (0, 1, 18, 71):
+                film.seek(number)
+                shown.append(np.asarray(film.convert("RGB"), int))
+        near = [np.abs(shown[0] - one).mean() for one in (shown[1], shown[3])]
+        assert 0 < max(near) < np.abs(shown[0] - shown[2]).mean()
+    for options in (("--check",), ("--look", "0,0,-1"), ("-o", "turn.png"), ("--background", "transparent")):
+        voxrt.fails(
+            2,
+            "turntable" if options[0] != "--background" else "transparent",
+            "render",
+            "house.mem",
+            "--turntable",
+            *options,
+        )
+    voxrt.fails(2, "or give --turntable", "render", "house.mem", "-o", "turn.webp")
 
 
 def test_light_bounces_and_shading(voxrt, built):

@@ -102,7 +102,7 @@ def test_pyvista_reads_memories(built, pyvista):
         (("house.obj", "--screenshot", "o.jpg"), 2, "ends in .png"),
         (("house.obj", "-o", "o.stl"), 2, "end in .vox, .npz, .ply, .glb, .vtu, .html"),
         (("house.obj", "-o", "house.mtl/o.vtu"), 2, "is a file, not a folder"),
-        (("house.obj", "--turntable", "o.avi"), 2, "end in .gif or .mp4"),
+        (("house.obj", "--turntable", "o.avi"), 2, "end in .gif or .webp or .mp4"),
         (("house.obj", "--level-limit", "17"), 2, "--level-limit must be an integer 0 … 16, not 17"),
         (("house.obj", "--slice", "x:3"), 2, "'x:3' is not AXIS=VOXEL"),
         (("house.obj", "--slice", "x=0"), 2, "'x=0' is not AXIS=VOXEL"),

@@ -122,7 +122,7 @@ def test_table_of_configurations():
 def test_figures_of_the_tutorial():
     measured = dict(rows(RESULTS / "demo.md", "| what | measured |"))
     text = (ROOT / "docs" / "tutorial.md").read_text()
-    line = next(line for line in text.splitlines() if line.startswith("  preview"))
-    assert shows(line.split("rtl:")[1], measured["cycles per pixel"], measured["words per ray"])
+    line = next(line for line in text.splitlines() if line.startswith("  checked"))
+    assert shows(line.split("differ,")[1], measured["cycles per pixel"])
     solid = next(line for line in text.splitlines() if line.startswith("  solid"))
     assert shows(solid, measured["solid voxels"])

@@ -189,6 +189,15 @@ def _vox_seed() -> bytes:
     return b"VOX " + struct.pack("<i", 150) + chunk(b"MAIN", b"", body)
 
 
+def _las_seed() -> bytes:
+    """LAS 1.2, point format 2, two points."""
+    head = b"LASF" + bytes(20) + b"\1\2" + bytes(64) + struct.pack("<HHHIIBHI", 1, 1, 227, 227, 0, 2, 26, 2)
+    head += bytes(20) + struct.pack("<12d", *[0.01] * 3, *[5e5, 5e6, 0], *[5e5 + 1, 5e5, 5e6 + 2, 5e6, 3, 0])
+    points = (struct.pack("<3iH4B2B3H", *at, 0, 9, 1, 0, 0, 0, 0, 65535, 0, 257) for at in ((0, 0, 0), (100, 200, 300)))
+    return head + b"".join(point.ljust(26, b"\0") for point in points)
+
+
+_XYZ = b"# x y z r g b\n0 0 0 255 0 10\n1.5, -2, 3e2, 0, 128, 20\n4;5;6;7;8;9\n"
 _OBJ = b"""mtllib a.mtl
 o house
 v 0 0 0 1 0 0
@@ -325,6 +334,8 @@ READERS = {
     "off": Reader(_as("a.off"), _read_scene, (_OFF,), (b"COFF", b"#", b"1e999", b"-1")),
     "3mf": Reader(_zipped("a.3mf", "3D/3dmodel.model"), _read_scene, (_3MF,), (b"pid=", b"p1=", b"path=", b"<base")),
     "dae": Reader(_as("a.dae"), _read_scene, (_DAE,), (b"polylist", b"vcount", b"matrix", b"&x;", b"1e999")),
+    "xyz": Reader(_as("a.xyz"), _read_scene, (_XYZ,), tuple(b"# // , ; nan 1e999 1_0 -".split())),
+    "las": Reader(_as("a.las"), _read_scene, (_las_seed(),), (b"LASF", b"\0\0\0\0", b"\xff\xff\xff\xff", b"laszip")),
     "vox-scene": Reader(_as("a.vox"), _read_scene, (_vox_seed(),), (b"SIZE", b"XYZI", b"PACK", b"nTRN", b"nSHP")),
     "toml": Reader(
         _as("a.toml"),

@@ -17,7 +17,8 @@ def assert_sound(scene):
         if len(mesh.triangles):
             assert 0 <= mesh.triangles.min() <= mesh.triangles.max() < len(mesh.positions)
             assert 1 <= mesh.materials.min() <= mesh.materials.max() < len(scene.materials)
-        assert 1 <= thing.collider_material < len(scene.materials)
+        if thing.colliders or len(mesh.triangles):
+            assert 1 <= thing.collider_material < len(scene.materials)
     assert len({material.name for material in scene.materials}) == len(scene.materials) <= 256
 
 

@@ -193,6 +193,8 @@ class Author:
         asset_materials = AssetMaterials(self._materials, asset, dict(materials or {}), name)
         meshes: dict[int, Mesh] = {}
         for one in asset.objects:
+            if collider and one.points is not None:
+                raise AuthoringError(f"{name}: points have no collider; leave it out")
             if id(one.mesh) not in meshes:
                 meshes[id(one.mesh)] = asset_materials.replaced(one.mesh)
             mesh = meshes[id(one.mesh)]
@@ -205,7 +207,8 @@ class Author:
             with np.errstate(over="ignore", invalid="ignore"):
                 placed = outer @ one.transform
             flags = (one.hidden and not (collider and filling), one.represented)
-            self._enter(SceneObject(path, mesh, _finite(path, placed), colliders, filling or 1, *flags))
+            placed = _finite(path, placed)
+            self._enter(SceneObject(path, mesh, placed, colliders, filling or 1, *flags, one.points))
         for warning in asset.warnings:
             self._log.add(warning.kind, f"{name}: {warning.message}", warning.count)
 

@@ -27,7 +27,7 @@ FARTHEST = 1e60
 
 def in_range(positions: NDArray[np.floating]) -> NDArray[np.bool_]:
     """Tell which positions, shape (…, 3), have three coordinates that are numbers below :data:`FARTHEST`."""
-    inside: NDArray[np.bool_] = (np.abs(positions) < FARTHEST).all(axis=-1)
+    inside: NDArray[np.bool_] = (np.abs(positions) < np.float64(FARTHEST)).all(axis=-1)
     return inside
 
 

@@ -110,7 +110,10 @@ def build_animation(
     if estimated is not None:
         estimated(plan.estimate)
     with clock.stage("colour"):
-        scenes = scenes.coloured(plan.grid, colours=options.colours, geometry=options.geometry)
+        placed = voxelize.place_points(
+            scenes.union, plan.grid, colours=options.colours, fill=options.fill, geometry=options.geometry
+        )
+        scenes = replace(scenes, union=placed).coloured(plan.grid, colours=options.colours, geometry=options.geometry)
     result = with_view(_join_frames(files.name, frames, scenes, plan.grid, clock), options)
     result = replace(result, warnings=merge_warnings(result.warnings))
     first.refuse_warnings(result.warnings)

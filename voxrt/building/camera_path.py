@@ -85,7 +85,7 @@ def take_picture(job: PictureJob, number: int, camera: Camera) -> PathPicture:
         if not job.check:
             return PathPicture(number, render(job.rom, camera, job.options), None)
         checked = sim.check(job.rom, camera, **job.options.for_engines())
-        return PathPicture(number, getattr(checked, job.options.engine), checked.wrong_pixels)
+        return PathPicture(number, getattr(checked, job.options.chosen_engine), checked.wrong_pixels)
     except Exception as error:
         raise ToolError(f"camera {number}: {error}") from error
 

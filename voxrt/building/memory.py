@@ -6,11 +6,12 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from voxrt import octree, voxelize
+from voxrt import octree
 from voxrt.building.result import BuildResult
 from voxrt.plans.plan import fit_plan
 from voxrt.plans.run_plan import run_here
 from voxrt.plans.stage_clock import StageClock
+from voxrt.plans.tile_tasks import scene_on_grid
 from voxrt.sources.object_selection import crowded_out, refuse_empty
 from voxrt.voxelize.formats.external_files import as_text
 
@@ -36,7 +37,7 @@ def make_memory(
     its interior, DoesNotFitError if no object has a voxel or the budget is too small; and the errors of `run`.
     """
     with clock.stage("colour"):
-        scene = voxelize.assign_colours(loaded, plan.grid, colours=options.colours, geometry=options.geometry)
+        scene = scene_on_grid(loaded, plan.grid, options)
     tree, report = run(plan, scene, clock)
     if not options.allow_empty:
         refuse_empty(label, plan.grid, report.objects)

@@ -6,7 +6,7 @@ from dataclasses import MISSING, dataclass
 from pathlib import Path
 
 from voxrt.options import notations
-from voxrt.options.build_options import CONTENT, BuildOptions
+from voxrt.options.build_options import CONTENT, PREVIEW, BuildOptions
 from voxrt.options.kinds import FLAG, file, files
 from voxrt.options.notations import FrameChoice
 from voxrt.options.option import ARGUMENTS, nested, option
@@ -30,6 +30,10 @@ class BuildCommand:
         "second START up to but without STOP, so that a loop closes (glTF, USD). files: each ASSET is a frame, in "
         "the natural order of their names; a folder stands for the assets in it.", is_rare=True)
     board: str | None = option(notations.BOARD, None, MEMORY, "A board, such as pynq-z1: its memory is the budget.")
+    check: bool = option(FLAG, False, PREVIEW,
+        "Render the view of the preview by the simulated hardware, too, and count the pixels that differ. This is the "
+        "default where it takes less than five seconds.", is_rare=True)
+    no_check: bool = option(FLAG, False, PREVIEW, "Leave that out.", is_rare=True)
     profile: bool = option(FLAG, False, RUNNING,
         "Print the time of each stage, with its parts indented below it.", is_rare=True)
     reporting: ReportOptions = nested(ReportOptions)

@@ -107,6 +107,9 @@ class BuildOptions:
         "Surfaces of lower opacity are left out, 0 to 1. The default is 0.5.",
         details="The alpha cutoff or opacity threshold that an author gave a material decides in its place.",
         is_rare=True, manifest="changed")
+    points: int | None = option(whole(1, 1 << 31), None, CONTENT,
+        "How many points of a point cloud make a voxel solid (PLY, XYZ, LAS). The default is 1.",
+        is_rare=True, manifest="changed")
     colours: int = option(whole(1, 254, "K"), 32, COLOUR,
         "The largest number of materials made of textures and vertex colours, 1 to 254.",
         details="Materials of one colour are not counted and keep their colour.", manifest="always")
@@ -147,14 +150,15 @@ class BuildOptions:
         "The author's camera for the preview and for boards, by name or by number, counted from 0 (glTF, USD). The "
         "default is the first. Without one, pictures show the whole scene from the front right and above.",
         is_rare=True)
-    samples: int = SAMPLES.field(group=PREVIEW, is_rare=True, goes_with="preview",
-        help="Rays per pixel of the preview on each axis: 1, 2 or 4. More than one smooths the edges.")
+    samples: int | None = SAMPLES.field(group=PREVIEW, default=None, is_rare=True, goes_with="preview",
+        help="Rays per pixel of the preview on each axis: 1, 2 or 4. More than one smooths the edges. The default is "
+        "4, or 1 with rtl.")
     background: str | tuple[int, int, int] | None = BACKGROUND.field(group=PREVIEW, is_rare=True, goes_with="preview",
         help="The background of the preview: light, dark, transparent, or a colour such as #204060. The default is "
-        "the background of the scene.")
-    engine: Engine = ENGINE.field(group=PREVIEW, is_rare=True, goes_with="preview",
-        help="What renders the preview. rtl: the verilated hardware, which counts its clock cycles. model: the "
-        "exact C++ model, which is faster. Both give the same pixels.")
+        "the background that the scene names, or light.")
+    engine: Engine = ENGINE.field(group=PREVIEW, default="model", is_rare=True, goes_with="preview",
+        help="What renders the preview. model: the exact C++ model, which is fast. rtl: the verilated hardware, which "
+        "counts its clock cycles. Both give the same pixels.")
     strict: bool = option(FLAG, False, RUNNING, "Refuse an asset that would otherwise cause a warning.", is_rare=True)
     allow_empty: bool = option(FLAG, False, RUNNING, "Accept a memory without a single solid voxel.", is_rare=True)
     allow_outside: bool = ALLOW_OUTSIDE.field(is_rare=True)

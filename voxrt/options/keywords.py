@@ -29,6 +29,7 @@ class BuildKeywords(TypedDict, total=False):
     animation: str | None
     variants: Sequence[str]
     opaque_from: float | None
+    points: int | None
     colours: int
     bake: bool
     sun: tuple[float, float, float]
@@ -42,7 +43,7 @@ class BuildKeywords(TypedDict, total=False):
     preview: str | PathLike[str] | bool
     size: tuple[int, int]
     camera: str | None
-    samples: int
+    samples: int | None
     background: str | tuple[int, int, int] | None
     engine: Engine
     strict: bool
@@ -58,8 +59,8 @@ class RenderKeywords(TypedDict, total=False):
     """:class:`RenderOptions`."""
 
     size: tuple[int, int]
-    engine: Engine
-    config: str
+    engine: Engine | None
+    config: str | None
     lighting: Lighting | None
     samples: int
     background: Background | str | None

@@ -289,7 +289,7 @@ INTERIOR = Kind(
 PICTURE = file("FILE", (".png",), "pictures are PNG files")
 """The name of a picture."""
 
-PICTURES = file("FILE", (".png", ".gif"), "pictures are PNG files, and animations GIF")
+PICTURES = file("FILE", (".png", ".gif", ".webp", ".mp4"), "pictures are PNG files, and animations GIF, WebP or MP4")
 """The name of a picture or of an animation."""
 
 PREVIEW = Kind(

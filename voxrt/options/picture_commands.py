@@ -45,7 +45,8 @@ class RenderCommand:
     scene: Path = SCENE.field(default=MISSING,
         details="The manifest of a .mem, the .json beside it, states materials, depth and dialect.")
     output: Path | None = option(notations.PICTURES, None, OUTPUT,
-        "The picture, a .png; or a .gif of all frames of an animation. The default is NAME.png in this folder.",
+        "The picture, a .png; or a .gif, .webp or .mp4 of all frames of an animation or of a turntable. The default is "
+        "NAME.png in this folder, or NAME.gif with {turntable}.",
         flags=("--output", "-o"))
     size: tuple[int, int] = SIZE.field()
     samples: Literal[1, 2, 4] = SAMPLES.field()
@@ -53,9 +54,12 @@ class RenderCommand:
     frame: int | None = option(INTEGER, None, PICTURE,
         "Frame of an animation, counted from 0, for a .png. The camera is that of all frames. The default is 0.",
         metavar="K", is_rare=True)
+    turntable: bool = option(FLAG, False, PICTURE,
+        "Turn the camera once around the scene: 72 pictures in one file.")
     sight: CameraOptions = nested(CameraOptions)
     lighting: LightOptions = nested(LightOptions)
-    engine: Engine = ENGINE.field()
+    engine: Engine | None = ENGINE.field(
+        details="The default is rtl where {config}, {check}, {latency}, {interval} or {jitter} is given, else model.")
     config: str | None = CONFIG.field(
         help="The configuration of the hardware. The default is tiny, or lit for light or mirrors, or cached1 for "
         "{lod}.",
@@ -97,11 +101,13 @@ class CompareCommand:
     rom: Path = option(file("ROM"), MISSING, ARGUMENTS, "A .mem file with its manifest.")
     asset: Path = option(file("ASSET"), MISSING, ARGUMENTS, "What it was built from.")
     output: Path | None = option(notations.PICTURE, None, OUTPUT,
-        "A .png of four pictures side by side: the meshes, the memory by the simulated hardware and by the exact "
-        "model, and the difference.", flags=("--output", "-o"))
+        "A .png of pictures side by side: the meshes, the memory by the exact model and, with {check}, by the "
+        "simulated hardware, and the difference.", flags=("--output", "-o"))
     curve: Path | None = option(notations.PICTURE, None, OUTPUT,
         "A .png that plots the similarity against depth and words. The asset is built at each depth up to the "
         "memory's.")
+    check: bool = option(FLAG, False, HARDWARE,
+        "Render with the simulated hardware, too, and count the pixels that differ from the exact model.")
     size: tuple[int, int] = SIZE.field()
     allow_outside: bool = ALLOW_OUTSIDE.field()
     reporting: ReportOptions = nested(ReportOptions)
@@ -131,7 +137,8 @@ class ViewCommand:
     depth: int | None = DEPTH.field()
     screenshot: Path | None = option(notations.PICTURE, None, OUTPUT, "Write this .png instead of opening a window.")
     turntable: Path | None = option(file("FILE"), None, OUTPUT,
-        "Write this .gif or .mp4 instead of opening a window. It shows the octants from all sides.")
+        "Write this .gif, .webp or .mp4 instead of opening a window. It shows the octants from all sides. voxrt render "
+        "--turntable shows the scene, and is faster.")
     output: Path | None = option(file("FILE"), None, OUTPUT,
         "Write this file instead of opening a window: .vox (MagicaVoxel), .npz (NumPy), .ply, .glb (glTF), .vtu "
         "(ParaView, PyVista), or .html (a page that needs no other file).", flags=("--output", "-o"))

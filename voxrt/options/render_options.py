@@ -28,13 +28,16 @@ class RenderOptions:
     Examples
     --------
     >>> from voxrt import RenderOptions
-    >>> RenderOptions(engine="model", background="light").background
+    >>> RenderOptions(background="light").background
     (236, 240, 244)
+    >>> RenderOptions().chosen_engine, RenderOptions(config="cached1").chosen_engine
+    ('model', 'rtl')
     """
 
     size: tuple[int, int] = SIZE.field()
-    engine: Engine = ENGINE.field()
-    config: str = CONFIG.field(default="tiny")
+    engine: Engine | None = ENGINE.field(
+        details="The default is rtl where {config} or {dram} is given, else model.")
+    config: str | None = CONFIG.field(help="The configuration of the hardware. The default is tiny.")
     lighting: Lighting | None = option(ANYTHING, None, None,
         "Brightness of faces, light and mirrors. For light and mirrors the hardware needs a configuration that has "
         "them. None takes the default brightness of faces.")
@@ -52,9 +55,14 @@ class RenderOptions:
     def __post_init__(self) -> None:
         check_options(self)
 
+    @property
+    def chosen_engine(self) -> Engine:
+        """What renders the picture."""
+        return self.engine or ("model" if self.config is None and self.dram is None else "rtl")
+
     def for_engines(self) -> dict[str, Any]:
         """Return what both engines take, as keywords of :func:`voxrt.sim.check`; `engine` is for one of them alone."""
         from voxrt.octree.camera import PLAIN_LIGHTING  # noqa: PLC0415 - NumPy comes with it
 
         keywords = {name: value for name, value in vars(self).items() if name != "engine"}
-        return {**keywords, "lighting": self.lighting or PLAIN_LIGHTING}
+        return {**keywords, "config": self.config or "tiny", "lighting": self.lighting or PLAIN_LIGHTING}

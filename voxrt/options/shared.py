@@ -30,9 +30,9 @@ SAMPLES = Option(notations.SAMPLES, 1, PICTURE,
     details="It takes as many frames as rays per pixel.")
 BACKGROUND = Option(notations.COLOUR, None, PICTURE,
     "light, dark, transparent, or a colour such as #204060. The default is the background of the memory.")
-ENGINE = Option(one_of(get_args(Engine)), "rtl", HARDWARE,
-    "rtl: the verilated hardware, which counts its clock cycles. model: the exact C++ model, which is faster. Both "
-    "give the same pixels.")
+ENGINE = Option(one_of(get_args(Engine)), None, HARDWARE,
+    "model: the exact C++ model, which is fast. rtl: the verilated hardware, which counts its clock cycles. Both give "
+    "the same pixels.")
 CONFIG = Option(text("NAME"), None, HARDWARE, "The configuration of the hardware.")
 DEPTH = Option(whole(1, 16), None, MEMORY, "Levels of the octree, for an asset or for a memory without a manifest.")
 DIALECT = Option(one_of(get_args(Dialect)), None, MEMORY,

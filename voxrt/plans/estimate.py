@@ -17,7 +17,8 @@ _SECONDS_PER_TRIANGLE = 1e-6
 _SECONDS_PER_SURFACE_VOXEL = 60e-9
 _SECONDS_PER_COLOURED_VOXEL = 100e-9
 _SECONDS_PER_BAKED_VOXEL_AND_SAMPLE = 40e-9
-_SECONDS_PER_HARDWARE_RAY = 4e-6
+_SECONDS_PER_HARDWARE_RAY = 6e-6
+_TRIANGLES_PER_POINT = 0.5  # a voxel of four triangles holds several points
 _BYTES_AT_START = 60 << 20
 _BYTES_PER_TRIANGLE = 200
 _BYTES_PER_SURFACE_VOXEL = 8
@@ -53,7 +54,7 @@ class BuildEstimate:
 
 
 def estimate_build(scene: Scene, grid: Grid, options: BuildOptions) -> BuildEstimate:
-    """Estimate what a build takes, from the number of triangles and of the voxels that they meet.
+    """Estimate what a build takes, from the number of triangles or points and of the voxels that they meet.
 
     A triangle meets about as many voxels as its projection along the axis that it faces most has voxel areas, and half
     as many again beside them.
@@ -65,10 +66,14 @@ def estimate_build(scene: Scene, grid: Grid, options: BuildOptions) -> BuildEsti
     >>> estimate_build(scene, voxrt.fit_grid(scene, depth=7), voxrt.BuildOptions()).seconds < 10
     True
     """
-    triangles, surface, coloured = 0, 0.0, 0.0
+    triangles, surface, coloured = 0.0, 0.0, 0.0
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for item in scene.objects:
         mesh = item.mesh
+        if item.points is not None:
+            surface += len(item.points.positions)
+            triangles += _TRIANGLES_PER_POINT * len(item.points.positions)
+            continue
         points = item.transform[:3, :3] @ mesh.positions.T.astype(np.float64)
         a, b, c = (points[:, corner] for corner in mesh.triangles.T)  # by axis: NumPy is slow along short rows
         if len(mesh.triangles):
@@ -87,13 +92,23 @@ def estimate_build(scene: Scene, grid: Grid, options: BuildOptions) -> BuildEsti
     if options.bake:
         seconds += surface * options.bake_samples * _SECONDS_PER_BAKED_VOXEL_AND_SAMPLE
     if options.preview and options.engine == "rtl":
-        rays = options.size[0] * options.size[1] * options.samples**2
-        seconds += rays * _SECONDS_PER_HARDWARE_RAY
-    least = _BYTES_AT_START + triangles * _BYTES_PER_TRIANGLE
+        seconds += hardware_seconds(options.size, options.samples or 1)
+    least = _BYTES_AT_START + int(triangles * _BYTES_PER_TRIANGLE)
     taken = least + surface * _BYTES_PER_SURFACE_VOXEL + coloured * _BYTES_PER_COLOURED_VOXEL
     ends = np.clip((np.stack([low, high]) - grid.origin) / grid.voxel_size, 0, grid.size)[:, :2]
     width = int(np.ceil(max(0.0, float((ends[1] - ends[0]).max()))))
     return BuildEstimate(seconds, int(taken), surface=int(surface), least=least, width=width)
+
+
+def hardware_seconds(size: tuple[int, int], samples: int = 1) -> float:
+    """Estimate the seconds that the simulated hardware takes for a picture.
+
+    Examples
+    --------
+    >>> hardware_seconds((640, 480)) < 5
+    True
+    """
+    return size[0] * size[1] * samples**2 * _SECONDS_PER_HARDWARE_RAY
 
 
 def _largest_projections(ab: NDArray[np.float64], ac: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -46,6 +46,16 @@ def tiles_key(voxelizer: BlockVoxelizer) -> str:
     return digest.hexdigest()
 
 
+def scene_on_grid(scene: Scene, grid: Grid, options: BuildOptions) -> Scene:
+    """Return a scene whose points are meshes and whose colours are materials, as a grid shows them.
+
+    DoesNotFitError if the scene's own materials leave no id for colours.
+    """
+    colours, geometry = options.colours, options.geometry
+    placed = voxelize.place_points(scene, grid, colours=colours, fill=options.fill, geometry=geometry)
+    return voxelize.assign_colours(placed, grid, colours=colours, geometry=geometry)
+
+
 def block_voxelizer(scene: Scene, grid: Grid, options: BuildOptions) -> BlockVoxelizer:
     """Make a scene ready to be voxelized tile by tile."""
     return BlockVoxelizer(
@@ -152,7 +162,7 @@ def _voxelizer(job: TileJob, objects: tuple[int, ...]) -> BlockVoxelizer:
     if whole is None:
         _scene.clear()
         options = replace(job.source.options, threads=threads)
-        scene = voxelize.assign_colours(job.source.load(), job.grid, colours=options.colours, geometry=options.geometry)
+        scene = scene_on_grid(job.source.load(), job.grid, options)
         whole = block_voxelizer(scene, job.grid, options)
         if tiles_key(whole) != key:
             raise ToolError(

@@ -82,6 +82,7 @@ class Source:
             animation=options.animation,
             variants=tuple(options.variants),
             opaque_from=options.opaque_from,
+            points=options.points,
             allow_outside=options.allow_outside,
         )
 
@@ -90,7 +91,7 @@ class Source:
         from voxrt.voxelize.from_trimesh import is_trimesh, trimesh_scene  # noqa: PLC0415
 
         value, options = self.value, self.options
-        unused = {name: getattr(options, name) for name in ("time", "animation", "variants", "opaque_from")}
+        unused = {name: getattr(options, name) for name in ("time", "animation", "variants", "opaque_from", "points")}
         if isinstance(value, Scene):
             scene, unused = value, unused | {"up": options.up, "unit": options.unit}
         elif is_trimesh(value):

@@ -48,7 +48,7 @@ class Picture:
     >>> import voxrt
     >>> built = voxrt.build("examples/house.obj", depth=4)
     >>> camera = voxrt.aim_camera(built.rom, (64, 48))
-    >>> frame = voxrt.render(built.rom, camera, size=(64, 48), engine="model")
+    >>> frame = voxrt.render(built.rom, camera, size=(64, 48))
     >>> voxrt.Picture(frame, camera, "model").frame.colour.shape
     (48, 64, 3)
     """
@@ -91,13 +91,15 @@ def render(
     --------
     >>> import voxrt
     >>> rom = voxrt.build("examples/house.obj", depth=5).rom
-    >>> frame = voxrt.render(rom, size=(64, 48), engine="model")
+    >>> frame = voxrt.render(rom, size=(64, 48))
     >>> frame.colour.shape
     (48, 64, 3)
     """
     rom = instance("rom", rom, Rom)
     options = merge("render", RenderOptions, options, keywords)
-    return sim.render(rom, camera or aim_camera(rom, options.size), engine=options.engine, **options.for_engines())
+    return sim.render(
+        rom, camera or aim_camera(rom, options.size), engine=options.chosen_engine, **options.for_engines()
+    )
 
 
 def animation_camera(blob: Blob, size: tuple[int, int]) -> Camera:
@@ -126,14 +128,15 @@ def animation_camera(blob: Blob, size: tuple[int, int]) -> Camera:
 
 
 def save_animation(pictures: Iterable[ArrayLike], path: str | os.PathLike[str], period: float | None = None) -> None:
-    """Write pictures as a GIF file that plays without end. An interruption leaves the old file or the new one.
+    """Write pictures as an animation. An interruption leaves the old file or the new one.
 
     Parameters
     ----------
     pictures
         uint8, shape (H, W, 3), sRGB, all of one size.
     path
-        The file. Its folder is made if it is missing.
+        The file: a .webp, an .mp4, which needs imageio-ffmpeg, or else a GIF. Its folder is made if it is missing. GIF
+        and WebP files play without end.
     period
         Seconds from one picture to the next, in steps of 1/100; None for 1/20.
 
@@ -149,7 +152,7 @@ def save_animation(pictures: Iterable[ArrayLike], path: str | os.PathLike[str], 
     >>> import numpy as np, voxrt
     >>> voxrt.save_animation([np.full((48, 64, 3), grey, np.uint8) for grey in (0, 255)], "blink.gif", 0.5)
     """
-    from voxrt.view.animation import write_gif  # noqa: PLC0415 - Pillow comes with it
+    from voxrt.view.animation import write_animation  # noqa: PLC0415 - Pillow comes with it
 
     arrays = [whole_array("pictures", one, ("H", "W", 3), np.uint8, low=0, high=255) for one in pictures]
     if not arrays or len({array.shape for array in arrays}) > 1:
@@ -157,7 +160,7 @@ def save_animation(pictures: Iterable[ArrayLike], path: str | os.PathLike[str], 
     path = Path(path)
     check_file(path)
     with writing(path):
-        write_gif(path, arrays, period)
+        write_animation(path, arrays, period)
 
 
 def save_picture(colour: ArrayLike, path: str | os.PathLike[str]) -> None:

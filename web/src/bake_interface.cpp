@@ -51,16 +51,8 @@ EXPORT(vx_bake) double vx_bake(const double* sun, const double* sky, int samples
         const octree::VerifiedMemory memory({result.words.data(), result.words.size(), result.grid.depth});
         sim::ExposedBricks bricks = sim::exposed_bricks(memory, 1);
         const sim::SurfacePoints points = sim::surface_points(memory, bricks, placed_triangles().view(), 1);
-        const size_t count = points.voxels.size();
-        const sim::PointsView view{count, points.origins.data(), points.normals.data()};
-        std::vector<int64_t> from_sun(count), unused(count), from_sky(count), open_sky(count);
-        const sim::LightEngine& engine = sim::light_engines()[0];
-        sim::receive_light(memory, view, sim::sun_direction(daylight.sun).view(), from_sun.data(), unused.data(), 1,
-                           sim::Method::automatic, engine);
-        sim::receive_light(memory, view, sim::sky_directions(samples).view(), from_sky.data(), open_sky.data(), 1,
-                           sim::Method::automatic, engine);
-        sim::LitVoxels lit =
-            sim::light_voxels(points.voxels, bricks.cells, {from_sun, from_sky, open_sky}, result.materials, daylight);
+        const sim::MeasuredLight light = sim::measure_light(memory, bricks.brick_codes, points, daylight, 1);
+        sim::LitVoxels lit = sim::light_voxels(light.points, bricks.cells, light.view(), result.materials, daylight);
         baked = {result.grid.depth, result.materials, std::move(bricks), std::move(lit)};
         sim::BakedMemory made = baked_memory(sim::kMostBakedColours);
         result.is_baked = true;

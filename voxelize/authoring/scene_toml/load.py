@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import reduce
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -25,7 +25,9 @@ if TYPE_CHECKING:
     from voxrt.voxelize.scene import Scene
 
 
-def load_scene_toml(path: str | Path, *, allow_outside: bool = False, opaque_from: float | None = None) -> Scene:
+def load_scene_toml(
+    path: str | Path, *, allow_outside: bool = False, opaque_from: float | None = None, points: int | None = None
+) -> Scene:
     """Read a scene file and the assets that it names.
 
     Parameters
@@ -34,6 +36,8 @@ def load_scene_toml(path: str | Path, *, allow_outside: bool = False, opaque_fro
         The file. Paths of assets are relative to its folder.
     allow_outside
         Whether assets may stand outside that folder, and files that assets name outside theirs.
+    opaque_from, points
+        As :func:`voxrt.voxelize.load` takes them, for assets.
 
     Returns
     -------
@@ -54,12 +58,13 @@ def load_scene_toml(path: str | Path, *, allow_outside: bool = False, opaque_fro
         raise AssetError(path, f"cannot be read: {error.strerror}", fix="check the path and its permissions") from None
     except UnicodeDecodeError:
         raise AssetError(path, "is not UTF-8 text", fix="save it as UTF-8") from None
-    return _Builder(check_file(path, text), allow_outside=allow_outside, opaque_from=opaque_from).scene()
+    for_assets: dict[str, Any] = {"opaque_from": opaque_from, "points": points}
+    return _Builder(check_file(path, text), for_assets, allow_outside=allow_outside).scene()
 
 
 class _Builder:
-    def __init__(self, checked: CheckedFile, *, allow_outside: bool, opaque_from: float | None) -> None:
-        self._opaque_from = opaque_from
+    def __init__(self, checked: CheckedFile, for_assets: dict[str, Any], *, allow_outside: bool) -> None:
+        self._for_assets = for_assets
         self._checked = checked
         self._external_files = ExternalFiles.of(checked.path, allow_outside=allow_outside)
         self._assets: dict[tuple[object, ...], Scene] = {}
@@ -223,8 +228,8 @@ class _Builder:
                     time=asset.time,
                     animation=asset.animation,
                     variants=tuple(asset.variants),
-                    opaque_from=self._opaque_from,
                     allow_outside=self._external_files.allow_outside,
+                    **self._for_assets,
                 )
             except AssetError as error:
                 if error.place:

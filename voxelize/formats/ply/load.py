@@ -7,15 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8
 from voxrt.voxelize.corner_normals import CornerNormals
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.external_files import ExternalFiles, asset_name, read_asset
 from voxrt.voxelize.formats.material_table import MaterialTable
 from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
 from voxrt.voxelize.formats.opacity import OPAQUE_FROM
-from voxrt.voxelize.formats.ply.format import Column, ListColumn, Table, read_ply
+from voxrt.voxelize.formats.ply.colours import linear_colours
+from voxrt.voxelize.formats.ply.format import ListColumn, Table, read_ply
 from voxrt.voxelize.formats.ply.painting import image_of_faces, read_textures, surface_appearance, texture_coordinates
+from voxrt.voxelize.formats.ply.points import load_points, places
 from voxrt.voxelize.formats.scene_frame import FARTHEST, hint_up_axis, in_range, scene_transform
 from voxrt.voxelize.formats.triangulation import triangulate_corners
 from voxrt.voxelize.scene import Scene, SceneObject
@@ -23,13 +24,6 @@ from voxrt.voxelize.warning_log import WarningLog
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-# Red, green, blue and alpha of a row, by the names that writers use; the first set that is there counts.
-_CHANNELS = (
-    ("red", "green", "blue", "alpha"),
-    ("diffuse_red", "diffuse_green", "diffuse_blue", "alpha"),
-    ("r", "g", "b", "a"),
-)
 
 
 def load_ply(
@@ -39,8 +33,11 @@ def load_ply(
     unit: float | None = None,
     allow_outside: bool = False,
     opaque_from: float = OPAQUE_FROM,
+    points: int | None = None,
 ) -> Scene:
     """Read a PLY file: vertices and polygons, with a texture, or with the colours of either, read as sRGB.
+
+    A file without polygons is a point cloud; one of Gaussians, a cloud of their centres.
 
     Parameters
     ----------
@@ -53,19 +50,26 @@ def load_ply(
     allow_outside
         Whether textures may stand outside the file's folder.
     opaque_from
-        Faces of lower opacity are left out.
+        Faces, points and Gaussians of lower opacity are left out.
+    points
+        How many points of a point cloud make a voxel solid; None for 1.
 
     Raises
     ------
     AssetError
-        The file cannot be read, contradicts its header, has no faces, or a broken texture.
+        The file cannot be read, contradicts its header, has neither faces nor points, or a broken texture.
     """
     path = Path(path)
     data = read_asset(path)
     log = WarningLog()
     ply = read_ply(path, data)
     tables = ply.tables
-    positions, counts, corners, kept = _geometry(path, tables, log)
+    vertices, polygons = tables.get("vertex", {}), _polygons(tables)
+    if polygons is None:
+        return load_points(path, vertices, scene_transform(up, unit), log, opaque_from=opaque_from, least=points)
+    if points is not None:
+        log.add("ignored-option", "--points was ignored: the file has faces")
+    positions, counts, corners, kept = _geometry(path, vertices, polygons, log)
     cut, faces = triangulate_corners(positions, counts, corners)
     triangles = corners.reshape(-1, 3) if (counts == 3).all() else corners[cut]
     table = MaterialTable()
@@ -82,7 +86,7 @@ def load_ply(
     if bare.any():
         count = int(np.count_nonzero(np.bincount(faces[bare])))
         materials[bare] = table.default(None if appearance is None else log, count)
-    loaded = LoadedMesh(positions, triangles, materials, appearance, _normals(tables["vertex"], triangles))
+    loaded = LoadedMesh(positions, triangles, materials, appearance, _normals(vertices, triangles))
     (mesh,) = assign_materials([loaded], table, log, opaque_from)
     if not len(mesh.triangles):
         raise AssetError(
@@ -105,44 +109,20 @@ def _colours_of_corners(
     tables: dict[str, Table], triangles: NDArray[np.int32], faces: NDArray[np.int64], log: WarningLog
 ) -> tuple[str, NDArray[np.float64]] | None:
     """Return the faces' colours of triangles' corners, else their vertices', and what they are; None for neither."""
-    by_face, by_vertex = (_colours(tables.get(element, {}), log) for element in ("face", "vertex"))
+    by_face, by_vertex = (linear_colours(tables.get(element, {}), log) for element in ("face", "vertex"))
     if by_face is not None and "tristrips" not in tables:  # strips have no colours of faces
         return "face colours", np.repeat(by_face[faces][:, None], 3, axis=1)
     return None if by_vertex is None else ("vertex colours", by_vertex[triangles])
 
 
-def _colours(table: Table, log: WarningLog) -> NDArray[np.float64] | None:
-    """Return linear colour and alpha, float64, shape (N, 4), of rows whose whole numbers or reals are sRGB."""
-    columns = {name: one for name, one in table.items() if not isinstance(one, ListColumn)}
-    names = next((names for names in _CHANNELS if columns.keys() >= set(names[:3])), None)
-    if names is None:
-        return None
-    *channels, alpha = (columns.get(name) for name in names)
-    stored = np.stack([_unit(one, log) for one in channels if one is not None], axis=1)
-    linear = LINEAR_OF_SRGB8[np.round(stored * 255.0).astype(np.uint8)]
-    opacity = np.ones(len(stored)) if alpha is None else _unit(alpha, log)
-    return np.column_stack([linear, opacity])
-
-
-def _unit(column: Column, log: WarningLog) -> NDArray[np.float64]:
-    """Return values of 0 … 1. The declared type alone decides their range; integers of 32 bits hold bytes.
-
-    So do whole numbers of an ASCII file that do not fit their type, and are above the range then.
-    """
-    full = {"u1": 255.0, "i1": 127.0, "u2": 65535.0, "i2": 32767.0, "i4": 255.0, "u4": 255.0, "i8": 255.0}.get(
-        column.dtype.str[1:], 1.0
-    )
-    values = np.nan_to_num(column.astype(np.float64), nan=0.0, posinf=1.0, neginf=0.0) / full
-    log.add("colour-range", "colours above the range of their type were clamped", int((values > 1.0).sum()))
-    return np.clip(values, 0.0, 1.0)
-
-
 def _polygons(tables: dict[str, Table]) -> ListColumn | None:
-    """Return the file's faces, then the triangles of its strips; None where it has neither."""
+    """Return the file's faces, then the triangles of its strips; None where it has no rows of either."""
     faces, strips = (
         table.get("vertex_indices", table.get("vertex_index"))
         for table in (tables.get("face", {}), tables.get("tristrips", {}))
     )
+    if not any(isinstance(rows, ListColumn) and len(rows.counts) for rows in (faces, strips)):
+        return None
     if not isinstance(strips, ListColumn):
         return faces if isinstance(faces, ListColumn) else None
     triangles = triangles_of_strips(strips)
@@ -172,25 +152,11 @@ def triangles_of_strips(strips: ListColumn) -> NDArray[np.float64]:
     return triangles[real]  # without those that only connect one strip to the next
 
 
-def _without_faces(path: Path, vertices: Table) -> AssetError:
-    """Return the error for a file that has points alone, or Gaussians."""
-    if {"f_dc_0", "opacity", "scale_0", "rot_0"} <= vertices.keys():
-        return AssetError(path, "is a Gaussian splat, which has no surface", fix="make a mesh of it")
-    return AssetError(path, "has no faces", fix="export it with its polygons; point clouds have no surface")
-
-
 def _geometry(
-    path: Path, tables: dict[str, Table], log: WarningLog
+    path: Path, vertices: Table, polygons: ListColumn, log: WarningLog
 ) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int32], NDArray[np.int64]]:
     """Positions, corners per face, corners, and which of the file's faces they are of."""
-    vertices = tables.get("vertex", {})
-    axes = [vertices.get(axis) for axis in "xyz"]
-    polygons = _polygons(tables)
-    if polygons is None or not len(polygons.counts):
-        raise _without_faces(path, vertices)
-    if any(axis is None or isinstance(axis, ListColumn) for axis in axes):
-        raise AssetError(path, "has vertices without x, y and z", fix="export it again")
-    positions = np.stack([np.asarray(axis, dtype=np.float64) for axis in axes], axis=1)
+    positions = places(path, vertices).astype(np.float64)
     counts = polygons.counts
     # Out of range before the cast, for ASCII numbers may be anything; NaN compares false.
     if len(polygons.values) and not (polygons.values.min() >= 0 and polygons.values.max() < len(positions)):

@@ -16,6 +16,7 @@ from voxrt.voxelize import arguments
 from voxrt.voxelize.formats.external_files import asset_name
 from voxrt.voxelize.formats.vox.load import load_vox
 from voxrt.voxelize.mesh import Mesh
+from voxrt.voxelize.primitive_meshes import VOXEL_MARK, VOXEL_MARK_TRIANGLES
 from voxrt.voxelize.scene import Scene, SceneObject
 
 if TYPE_CHECKING:
@@ -30,9 +31,7 @@ _SIDES = (
     ((0, 0, -1), ((0, 0, 0), (0, 1, 0), (1, 1, 0), (1, 0, 0))),
     ((0, 0, 1), ((0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))),
 )
-_SQUARE = ((0, 1, 2), (0, 2, 3))
-_TETRAHEDRON = np.array([[0.25, 0.25, 0.25], [0.75, 0.75, 0.25], [0.75, 0.25, 0.75], [0.25, 0.75, 0.75]])
-_FACES = ((0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3))
+_SQUARE = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
 
 
 def load_vox_scene(path: str | Path, *, unit: float | None = None, time: float | None = None) -> Scene:
@@ -79,12 +78,12 @@ def _surface(coordinates: NDArray[np.int64], ids: NDArray[np.uint8]) -> Mesh:
     seen = np.zeros(len(keys), np.bool_)
     count = 0
 
-    def add(where: NDArray[np.bool_], shape: NDArray[np.float64], faces: tuple[tuple[int, ...], ...]) -> None:
+    def add(where: NDArray[np.bool_], shape: NDArray[np.float64], faces: NDArray[np.int32]) -> None:
         nonlocal count
         points = (corners[where][:, None] + shape).reshape(-1, 3)
         begins = count + len(shape) * np.arange(len(points) // len(shape))
         positions.append(points)
-        triangles.append((begins[:, None, None] + np.array(faces)).reshape(-1, 3))
+        triangles.append((begins[:, None, None] + faces).reshape(-1, 3))
         materials.append(np.repeat(ids[where], len(faces)))
         count += len(points)
 
@@ -94,5 +93,5 @@ def _surface(coordinates: NDArray[np.int64], ids: NDArray[np.uint8]) -> Mesh:
         is_open = keys[place] != beside
         seen |= is_open
         add(is_open, np.array(square, np.float64), _SQUARE)
-    add(seen, _TETRAHEDRON, _FACES)
+    add(seen, VOXEL_MARK, VOXEL_MARK_TRIANGLES)
     return Mesh(np.concatenate(positions), np.concatenate(triangles).astype(np.int32), np.concatenate(materials))

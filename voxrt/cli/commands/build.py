@@ -8,17 +8,31 @@ from typing import TYPE_CHECKING
 
 import voxrt
 from voxrt.building.pipeline import build
+from voxrt.building.view import check_preview
 from voxrt.cli.terminal.errors import UsageError
-from voxrt.cli.terminal.messages import budget_loss, budget_text, frames_row, picture_cost, summarize, tabulate, warn
+from voxrt.cli.terminal.messages import (
+    budget_loss,
+    budget_text,
+    check_text,
+    frames_row,
+    picture_cost,
+    summarize,
+    tabulate,
+    warn,
+)
 from voxrt.cli.terminal.process_age import process_age
 from voxrt.cli.terminal.progress import build_bar
+from voxrt.plans.estimate import hardware_seconds
 
 if TYPE_CHECKING:
     from os import PathLike
     from pathlib import Path
 
+    from voxrt.cli.terminal.progress import BuildBar
     from voxrt.options.build_command import BuildCommand
+    from voxrt.sim import EngineCheck
 
+_QUICK = 5.0  # seconds that a check may take which nobody asked for
 _NAMED = 32  # so many materials still read as a list
 
 
@@ -29,6 +43,10 @@ def run(command: BuildCommand) -> None:
         if options.budget is not None:
             raise UsageError("--budget and --board exclude each other; give one of them")
         options = replace(options, budget=command.board)
+    if command.check and command.no_check:
+        raise UsageError("--check and --no-check exclude each other; give one of them")
+    if (command.check or command.no_check) and not options.preview:
+        raise UsageError("--check and --no-check are of a preview: give --preview as well")
     if command.frames is None:
         _check_company(command.assets, command.output, options.preview)
     else:
@@ -42,7 +60,7 @@ def _build_all(command: BuildCommand) -> None:
     waited = process_age()
     for asset in command.assets if command.frames is None else command.assets[:1]:
         begun = perf_counter()
-        result = _build(asset, command)
+        result, check = _build(asset, command)
         seconds = {"start": waited, **result.seconds}
         seconds["rest"] = max(0.0, perf_counter() - begun - sum(result.seconds.values()))
         waited = 0.0
@@ -52,11 +70,16 @@ def _build_all(command: BuildCommand) -> None:
         if command.reporting.json:
             from voxrt.cli.results.build_results import build_report  # noqa: PLC0415 - most builds print a summary
 
-            reports.append(build_report(result, seconds))
+            reports.append(build_report(result, seconds, check))
         else:
-            summarize(f"{asset.name}:", _rows(result))
+            summarize(f"{asset.name}:", _rows(result, check))
         if command.profile:
             _print_profile(seconds, result.parts)
+        if check is not None and check.wrong_pixels:
+            raise voxrt.SimulatorError(
+                f"{asset}: {check.wrong_pixels} pixels differ between the hardware and its model; "
+                "please report it with the file"
+            )
     if command.reporting.json:
         from voxrt.cli.results.build_results import print_json  # noqa: PLC0415 - as above
 
@@ -83,19 +106,43 @@ def _check_frames(command: BuildCommand) -> None:
         )
 
 
-def _build(asset: Path, command: BuildCommand) -> voxrt.BuildResult:
-    """Build an asset, or the animation of one or all."""
-    assets, frames, output, options = command.assets, command.frames, command.output, command.options
+def _build(asset: Path, command: BuildCommand) -> tuple[voxrt.BuildResult, EngineCheck | None]:
+    """Build an asset, or the animation of one or all; then check its preview."""
     with build_bar() as bar:
-        if frames is None:
-            return build(asset, output, options, progress=bar.begin, estimated=bar.estimate, clustered=bar.tiles)
-        made: Path | list[Path] = asset
-        if frames == "files" and (len(assets) > 1 or not asset.is_dir()):
-            from voxrt.sources.frames import natural_order  # noqa: PLC0415 - NumPy comes with it
+        result = _built(asset, command, bar)
+        begun = perf_counter()
+        check = _check(result, command, bar)
+        if check is not None:
+            result.seconds["check"] = perf_counter() - begun
+        return result, check
 
-            made = sorted(assets, key=natural_order)
-        times = None if frames == "files" else voxrt.frame_times(*frames)
-        return voxrt.build_animation(made, output, options, times=times, progress=bar.begin, estimated=bar.estimate)
+
+def _built(asset: Path, command: BuildCommand, bar: BuildBar) -> voxrt.BuildResult:
+    assets, frames, output, options = command.assets, command.frames, command.output, command.options
+    if frames is None:
+        return build(asset, output, options, progress=bar.begin, estimated=bar.estimate, clustered=bar.tiles)
+    made: Path | list[Path] = asset
+    if frames == "files" and (len(assets) > 1 or not asset.is_dir()):
+        from voxrt.sources.frames import natural_order  # noqa: PLC0415 - NumPy comes with it
+
+        made = sorted(assets, key=natural_order)
+    times = None if frames == "files" else voxrt.frame_times(*frames)
+    return voxrt.build_animation(made, output, options, times=times, progress=bar.begin, estimated=bar.estimate)
+
+
+def _check(result: voxrt.BuildResult, command: BuildCommand, bar: BuildBar) -> EngineCheck | None:
+    """Compare the preview with the simulated hardware, if that is asked for, or is quick and possible."""
+    if result.preview is None or command.no_check:
+        return None
+    if not command.check and (command.options.engine == "rtl" or hardware_seconds(command.options.size) > _QUICK):
+        return None
+    bar.begin("check")
+    try:
+        return check_preview(result)
+    except voxrt.SimulatorError:
+        if command.check:
+            raise
+        return None
 
 
 def _check_company(assets: tuple[Path, ...], output: Path, preview: str | PathLike[str] | bool) -> None:
@@ -132,7 +179,7 @@ def _print_profile(seconds: dict[str, float], parts: dict[str, dict[str, float]]
     tabulate(("stage", "ms", "%"), [*percents, ("all", f"{1e3 * total:.1f}", "100")])
 
 
-def _rows(result: voxrt.BuildResult) -> list[tuple[str, str]]:
+def _rows(result: voxrt.BuildResult, check: EngineCheck | None) -> list[tuple[str, str]]:
     rom, total = result.rom, sum(result.seconds.values())
     size, materials = len(rom.octree.words), rom.materials[1:]
     voxel = f", {rom.grid.voxel_size:.4g} m each" if rom.grid else ""
@@ -148,6 +195,7 @@ def _rows(result: voxrt.BuildResult) -> list[tuple[str, str]]:
         *([("budget", budget_text(result.budget))] if result.budget else []),
         ("materials", f"{len(materials)}" + (f": {names}" if materials else "")),
         *([("preview", picture_cost(result.preview.frame, result.preview.engine))] if result.preview else []),
+        *([("checked", check_text(check))] if check else []),
         ("seconds", f"{total:.2f}" + (f": {stages}" if stages else "")),
         *(("wrote", str(path)) for path in result.outputs.values()),
     ]

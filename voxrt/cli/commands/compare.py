@@ -28,7 +28,7 @@ def run(options: CompareCommand) -> None:
     warn((*warnings, *scene.warnings))
     camera = voxrt.aim_camera(memory, options.size)
     found = voxrt.compare(scene, memory, camera, options.size)
-    hardware = _hardware(memory, camera, options.size)
+    hardware = _hardware(memory, camera, options.size) if options.check else None
     outputs = {}
     if options.output is not None:
         voxrt.save_picture(

@@ -15,6 +15,8 @@ from voxrt.cli.terminal.messages import cache_cost, picture_cost, summarize, war
 from voxrt.octree import with_means
 from voxrt.options.render_options import RenderOptions
 from voxrt.options.view_options import CameraOptions
+from voxrt.view.animation import ANIMATION_SUFFIXES
+from voxrt.views.viewpoint import orbit
 
 if TYPE_CHECKING:
     from voxrt import Frame, Lighting
@@ -23,31 +25,37 @@ if TYPE_CHECKING:
     from voxrt.options.picture_commands import RenderCommand
     from voxrt.sim import Dram
 
+_TURNS = 72  # pictures of a turntable
+
 
 def run(command: RenderCommand) -> None:
     """Render a picture of a memory or an asset, with the same pixels as the hardware."""
     _check_path(command)
-    file = command.output or Path(f"{command.scene.stem}.png")
+    file = command.output or Path(f"{command.scene.stem}.{'gif' if command.turntable else 'png'}")
     source = read_source(command.scene, command.depth, command.dialect, frames=True)
     blob = source.blob
     roots = _roots(blob, file, command)
     camera = source.camera(command.size, command.sight)
     memory = _with_means(blob) if command.lod else source.rom
     options = _options(command, merge_lighting(blob.lighting, command.lighting))
+    engine = options.chosen_engine
     if command.cameras is not None:
         _take_path(command, memory, options, file, roots[0])
+        return
+    if command.turntable:
+        _turn(command, memory, options, file, roots)
         return
     wrong_pixels = None
     if command.check:
         checked = voxrt.check(memory, camera, **replace(options, root=roots[0]).for_engines())
-        frame, wrong_pixels = getattr(checked, command.engine), checked.wrong_pixels
+        frame, wrong_pixels = getattr(checked, engine), checked.wrong_pixels
         voxrt.save_picture(frame.colour, file)
     else:
         frame = _save([voxrt.render(memory, camera, options, root=root) for root in roots], file, blob.animation)
     if command.reporting.json:
-        print_json(render_result(voxrt.Picture(frame, camera, command.engine), file, wrong_pixels))
+        print_json(render_result(voxrt.Picture(frame, camera, engine), file, wrong_pixels))
     else:
-        rows = [("picture", picture_cost(frame, command.engine))]
+        rows = [("picture", picture_cost(frame, engine))]
         if frame.cost.cache is not None:
             rows.append(("caches", cache_cost(frame.cost.cache, frame.cost.rays)))
         if len(roots) > 1:
@@ -68,21 +76,24 @@ def _options(command: RenderCommand, lighting: Lighting) -> RenderOptions:
         if command.lighting.light is not None or command.lighting.bounces:
             raise UsageError("--lod does not go with --light or --bounces; leave them or --lod out")
         lighting = _unlit(lighting, "--lod goes without light and mirrors")
+    dram = _dram(command)
+    is_hardware = command.check or dram is not None or command.config is not None
+    engine = command.engine or ("rtl" if is_hardware else "model")
     config = command.config or ("cached1" if command.lod else "lit" if lighting.features else "tiny")
     if (
-        command.engine == "rtl"
+        engine == "rtl"
         and not (command.config is None or command.lod or is_lit)
         and (lighting.features - voxrt.shader_features(config))
     ):
         lighting = _unlit(lighting, f"{config} has none, --config lit does")
     return RenderOptions(
         size=command.size,
-        engine=command.engine,
+        engine=engine,
         config=config,
         lighting=lighting,
         samples=command.samples,
         background=command.background,
-        dram=_dram(command),
+        dram=dram,
         lod=(1.0 if command.lod_cell is None else command.lod_cell) if command.lod else 0.0,
     )
 
@@ -119,13 +130,45 @@ def _check_path(command: RenderCommand) -> None:
         return
     if command.sight != CameraOptions():
         raise UsageError("--cameras says where the camera stands; leave --position, --look, --right and --up out")
-    if command.output is not None and command.output.suffix.lower() == ".gif":
+    if command.turntable:
+        raise UsageError("--turntable and --cameras exclude each other; give one of them")
+    if command.output is not None and _is_animated(command.output):
         raise UsageError(f"{command.output}: the pictures of a path are PNG files; name a .png")
+
+
+def _is_animated(file: Path) -> bool:
+    return file.suffix.lower() in ANIMATION_SUFFIXES
+
+
+def _turn(command: RenderCommand, memory: Rom, options: RenderOptions, file: Path, roots: tuple[int, ...]) -> None:
+    """Save pictures from all around a scene as one file, and say what they cost."""
+    excluded = {
+        "--check": command.check,
+        "--json": command.reporting.json,
+        "a camera": command.sight != CameraOptions(),
+    }
+    for name, is_given in excluded.items():
+        if is_given:
+            raise UsageError(f"--turntable and {name} exclude each other; leave one of them out")
+    if not _is_animated(file):
+        raise UsageError(f"{file}: a turntable is a .gif, .webp or .mp4; name one of these")
+    if command.background == "transparent":
+        raise UsageError(f"{file}: a {file.suffix} has no transparent background; name another one")
+    cameras = orbit(memory, options.size, _TURNS, roots=roots)
+    frames = [voxrt.render(memory, camera, options, root=roots[0]) for camera in cameras]
+    voxrt.save_animation([one.colour for one in frames], file)
+    seconds = sum(one.cost.seconds for one in frames)
+    width, height = options.size
+    rows = [
+        ("pictures", f"{_TURNS}, {width}x{height} by {options.chosen_engine}: {seconds:.2f} s"),
+        ("wrote", str(file)),
+    ]
+    summarize(f"{command.scene.name}:", rows)
 
 
 def _save(frames: list[Frame], file: Path, animation: Animation | None) -> Frame:
     """Save frames, and return the first."""
-    if file.suffix.lower() == ".gif":
+    if _is_animated(file):
         voxrt.save_animation([one.colour for one in frames], file, animation.period if animation else None)
     else:
         voxrt.save_picture(frames[0].colour, file)
@@ -143,7 +186,7 @@ def _take_path(command: RenderCommand, memory: Rom, options: RenderOptions, file
         target = file.with_stem(f"{file.stem}-{picture.number:04d}")
         voxrt.save_picture(picture.frame.colour, target)
         wrong += picture.wrong_pixels or 0
-        view = voxrt.Picture(picture.frame, path[picture.number], command.engine)
+        view = voxrt.Picture(picture.frame, path[picture.number], options.chosen_engine)
         results.append(render_result(view, target, picture.wrong_pixels))
     if command.reporting.json:
         print_json(results)
@@ -159,17 +202,20 @@ def _roots(blob: Blob, file: Path, command: RenderCommand) -> tuple[int, ...]:
     """Return the roots of the frames that are asked for."""
     roots = (0,) if blob.animation is None else blob.animation.roots
     frame = command.frame
-    if file.suffix.lower() != ".gif":
+    if command.turntable or not _is_animated(file):
         blob.frame(frame or 0)  # refuses one that is not there
         return roots[frame or 0 : (frame or 0) + 1]
     if blob.animation is None:
-        raise UsageError(f"{file}: a .gif is of an animation, and the memory has one frame; name a .png")
+        raise UsageError(
+            f"{file}: a {file.suffix} is of an animation, and the memory has one frame; "
+            "name a .png, or give --turntable"
+        )
     if frame is not None:
-        raise UsageError(f"{file}: a .gif has all frames; leave --frame out, or name a .png")
+        raise UsageError(f"{file}: a {file.suffix} has all frames; leave --frame out, or name a .png")
     if command.check:
         raise UsageError("--check is of one frame: name a .png, and the frame by --frame")
     if command.background == "transparent":
-        raise UsageError(f"{file}: a .gif has no transparent background; name another one")
+        raise UsageError(f"{file}: a {file.suffix} has no transparent background; name another one")
     return roots
 
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from voxrt.building.fitting import BudgetFit
     from voxrt.building.result import BuildResult
     from voxrt.export import RomInfo
-    from voxrt.sim import CacheCost, Camera, RenderCost
+    from voxrt.sim import CacheCost, Camera, EngineCheck, RenderCost
     from voxrt.views.pictures import Picture
 
 
@@ -80,6 +80,24 @@ class RenderResult(msgspec.Struct, frozen=True, omit_defaults=True):
     """The cache; missing for a configuration without one."""
     wrong_pixels: int | msgspec.UnsetType = msgspec.UNSET
     """With ``--check``: pixels on which the two engines differ."""
+
+
+class CheckEntry(msgspec.Struct, frozen=True):
+    """The view of the preview by the simulated hardware, one ray per pixel, beside the exact model."""
+
+    pixels: int
+    wrong_pixels: int
+    """Pixels on which the two differ."""
+    cycles_per_pixel: float
+    words_per_ray: float
+    seconds: float
+
+    @classmethod
+    def of(cls, check: EngineCheck) -> CheckEntry:
+        """Return what a check found."""
+        cost = check.rtl.cost
+        cycles, words = (count or 0 for count in (cost.cycles, cost.words_read))
+        return cls(check.wrong.size, check.wrong_pixels, cycles / cost.rays, words / cost.rays, cost.seconds)
 
 
 class BudgetEntry(msgspec.Struct, frozen=True):
@@ -143,11 +161,13 @@ class BuildReport(msgspec.Struct, frozen=True):
     """Null when they keep their materials."""
     baked: BakedLight | None = None
     """Null when no light was baked."""
+    check: CheckEntry | None = None
+    """Null when the preview was not compared with the simulated hardware."""
     frames: FramesEntry | None = None
     """Null when no animation was built."""
 
 
-def build_report(result: BuildResult, seconds: dict[str, float]) -> BuildReport:
+def build_report(result: BuildResult, seconds: dict[str, float], check: EngineCheck | None = None) -> BuildReport:
     """Return what a build made, for programs. `seconds`: its stages, with what came before and between them."""
     rom, animation = result.rom, result.animation
     return BuildReport(
@@ -166,6 +186,7 @@ def build_report(result: BuildResult, seconds: dict[str, float]) -> BuildReport:
         budget=None if result.budget is None else budget_entry(result.budget),
         interior=None if result.interior is None else InteriorEntry(**asdict(result.interior)),
         baked=result.bake,
+        check=None if check is None else CheckEntry.of(check),
         frames=None if animation is None else FramesEntry(list(animation.roots), animation.words_alone),
     )
 

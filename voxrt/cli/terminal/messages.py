@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from voxrt.building.fitting import BudgetFit
     from voxrt.octree import Animation
-    from voxrt.sim import CacheCost, Frame
+    from voxrt.sim import CacheCost, EngineCheck, Frame
     from voxrt.voxelize import SceneWarning
 
 _PRINTED_OF_A_KIND = 20
@@ -96,7 +96,16 @@ def picture_cost(frame: Frame, engine: str) -> str:
     cost = frame.cost
     cycles = "" if cost.cycles is None else f"{cost.cycles / cost.rays:.2f} cycles per pixel, "
     words = "" if cost.words_read is None else f"{cost.words_read / cost.rays:.2f} words per ray, "
-    return f"{width}x{height} by {engine}: {cycles}{words}{cost.seconds:.2f} s"
+    rays = cost.rays // (width * height)
+    samples = f", {rays} rays per pixel," if rays > 1 else ""
+    return f"{width}x{height}{samples} by {engine}: {cycles}{words}{cost.seconds:.2f} s"
+
+
+def check_text(check: EngineCheck) -> str:
+    """Return in one line what comparing the engines found, and what the hardware took."""
+    cost = check.rtl.cost
+    cycles = "" if cost.cycles is None else f", {cost.cycles / cost.rays:.2f} cycles per pixel"
+    return f"{check.wrong_pixels:,} of {check.wrong.size:,} pixels differ{cycles}"
 
 
 def frames_row(animation: Animation, words: int) -> str:

@@ -181,6 +181,40 @@ nb::object bind_measure_surface(const Vector<std::uint32_t>& words, int depth, c
         to_numpy(std::move(points.origins), {found, 3}), to_numpy(std::move(points.normals), {found, 3}));
 }
 
+// Refuses points that are not near the solid voxels.
+void require_near(const voxrt::octree::Memory& memory, const Rows<std::int32_t, 3>& voxels) {
+    const auto bounds = voxrt::octree::solid_bounds(memory);
+    require(bounds.has_value() || voxels.shape(0) == 0, "nothing is solid, so there are no points");
+    for (std::size_t i = 0; i < 3 * voxels.shape(0); ++i)
+        require(voxels.data()[i] >= bounds->low[i % 3] - kPointMargin &&
+                    voxels.data()[i] < bounds->high[i % 3] + kPointMargin,
+                "point " + std::to_string(i / 3) + " lies more than 4 voxels from the box of the solid voxels");
+}
+
+nb::object bind_measure_light(const Vector<std::uint32_t>& words, int depth, const Vector<std::uint64_t>& codes,
+                              const Vector<std::uint64_t>& voxels, const Rows<std::int32_t, 3>& origins,
+                              const Rows<std::int16_t, 3>& normals, const std::array<double, 3>& sun,
+                              const std::array<double, 3>& sky, int samples, int threads) {
+    require_threads(threads);
+    const std::size_t count = voxels.shape(0);
+    require(origins.shape(0) == count && normals.shape(0) == count, "voxels, origins and normals differ in length");
+    for (std::size_t i = 0; i < count; ++i)
+        require(voxels.data()[i] / kBrickVoxels < codes.shape(0), "a voxel is in no brick");
+    const SurfacePoints points{{voxels.data(), voxels.data() + count},
+                               {origins.data(), origins.data() + 3 * count},
+                               {normals.data(), normals.data() + 3 * count}};
+    MeasuredLight light;
+    {
+        const LongCall call;
+        const VerifiedMemory memory(memory_of(words, depth));
+        require_near(memory.memory(), origins);
+        light = measure_light(memory, span_of(codes), points, {sun, sky, samples}, threads);
+    }
+    const std::size_t found = light.points.size();
+    return nb::make_tuple(to_numpy(std::move(light.points), {found}), to_numpy(std::move(light.sun), {found}),
+                          to_numpy(std::move(light.sky), {found}), to_numpy(std::move(light.open_sky), {found}));
+}
+
 const LightEngine& engine_of(const std::string& instructions) {
     for (const LightEngine& engine : light_engines())
         if (instructions.empty() || instructions == engine.instructions)
@@ -195,16 +229,6 @@ Method method_of(const std::string& name) {
         return Method::sweep;
     require(name == "automatic", "there is no method '" + name + "'");
     return Method::automatic;
-}
-
-// Refuses points that are not near the solid voxels.
-void require_near(const voxrt::octree::Memory& memory, const Rows<std::int32_t, 3>& voxels) {
-    const auto bounds = voxrt::octree::solid_bounds(memory);
-    require(bounds.has_value() || voxels.shape(0) == 0, "nothing is solid, so there are no points");
-    for (std::size_t i = 0; i < 3 * voxels.shape(0); ++i)
-        require(voxels.data()[i] >= bounds->low[i % 3] - kPointMargin &&
-                    voxels.data()[i] < bounds->high[i % 3] + kPointMargin,
-                "point " + std::to_string(i / 3) + " lies more than 4 voxels from the box of the solid voxels");
 }
 
 nb::object bind_receive_light(const Vector<std::uint32_t>& words, int depth, const Rows<std::int32_t, 3>& voxels,
@@ -266,6 +290,11 @@ NB_MODULE(_bake, m) {
     m.def("measure_surface", &bind_measure_surface, "words"_a, "depth"_a, "corners"_a, "normals"_a, "threads"_a,
           "The exposed voxels of a memory, and the points where their light is measured: exposed_bricks.h and\n"
           "surface_points.h. corners (T, 3, 3) float64 in voxels, normals (T, 3, 3) float32.");
+    m.def(
+        "measure_light", &bind_measure_light, "words"_a, "depth"_a, "brick_codes"_a, "voxels"_a, "origins"_a,
+        "normals"_a, "towards_sun"_a, "sky_light"_a, "samples"_a, "threads"_a,
+        "baked_light.h. Takes what measure_surface() returns; returns points, and their light of the sun, of the sky\n"
+        "and of an open sky.");
     m.def("receive_light", &bind_receive_light, "words"_a, "depth"_a, "voxels"_a, "normals"_a, "steps"_a, "units"_a,
           "weights"_a, "threads"_a, "method"_a = "automatic", "instructions"_a = "",
           "The light that points receive: received_light.h. ValueError: a number out of range.");

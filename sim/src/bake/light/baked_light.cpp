@@ -1,5 +1,7 @@
 #include "baked_light.h"
 
+#include "received_light.h"
+
 #include <voxrt/octree/build/build.h>
 #include <voxrt/voxelize/colour/srgb.h>
 
@@ -17,6 +19,7 @@ namespace {
 constexpr std::size_t kMostInside = 16;                           // materials of voxels that are not exposed
 constexpr double kSumOfUnitLight = double(std::int64_t{1} << 44); // of light 1 from a direction that is faced
 constexpr double kWeight = 1 << 16;
+constexpr double kDark = 0.1; // of the sun and an open sky: voxels that receive less have points at their faces
 
 using Counts = std::array<std::int64_t, 256>;
 
@@ -95,38 +98,87 @@ std::vector<voxelize::TableMaterial> baked_table(const std::vector<voxelize::Tab
     return table;
 }
 
+// The light of the sun and the share of the sky's at each point.
+class VoxelLight {
+public:
+    VoxelLight(const ReceivedLight& received, const Daylight& daylight)
+        : received_(received), strength_(daylight.sun_light()),
+          mean_sky_((daylight.sky[0] + daylight.sky[1] + daylight.sky[2]) / 3) {}
+
+    double sun(std::size_t i) const { return strength_ * static_cast<double>(received_.sun[i]) / kSumOfUnitLight; }
+    double sky(std::size_t i) const {
+        return static_cast<double>(received_.sky[i]) /
+               (kWeight * static_cast<double>(std::max<std::int64_t>(received_.open_sky[i], 1)));
+    }
+    double total(std::size_t i) const { return sun(i) + mean_sky_ * sky(i); }
+    double brightest() const { return strength_ + mean_sky_; }
+
+private:
+    ReceivedLight received_;
+    double strength_, mean_sky_;
+};
+
 } // namespace
+
+MeasuredLight measure_light(const octree::VerifiedMemory& memory, std::span<const std::uint64_t> brick_codes,
+                            const SurfacePoints& points, const Daylight& daylight, int threads) {
+    const Directions sun = sun_direction(daylight.sun), sky = sky_directions(daylight.samples);
+    const auto measured = [&](const SurfacePoints& at) {
+        const std::size_t count = at.voxels.size();
+        MeasuredLight light{at.voxels, {}, {}, {}};
+        std::vector<std::int64_t> unused(count);
+        for (auto* one : {&light.sun, &light.sky, &light.open_sky})
+            one->resize(count);
+        const PointsView view{count, at.origins.data(), at.normals.data()};
+        receive_light(memory, view, sun.view(), light.sun.data(), unused.data(), threads, Method::automatic,
+                      light_engines()[0]);
+        receive_light(memory, view, sky.view(), light.sky.data(), light.open_sky.data(), threads, Method::automatic,
+                      light_engines()[0]);
+        return light;
+    };
+    const MeasuredLight first = measured(points);
+    const VoxelLight light(first.view(), daylight);
+    std::vector<std::uint64_t> dark;
+    for (std::size_t i = 0, next; i < first.points.size(); i = next) {
+        double most = 0;
+        for (next = i; next < first.points.size() && first.points[next] == first.points[i]; ++next)
+            most = std::max(most, light.total(next));
+        if (most < kDark * light.brightest())
+            dark.push_back(first.points[i]);
+    }
+    const MeasuredLight faces = measured(face_points(memory, brick_codes, dark));
+    MeasuredLight all;
+    for (std::size_t i = 0, face = 0; i < first.points.size(); ++i) {
+        all.add(first, i, 1);
+        if (i + 1 == first.points.size() || first.points[i + 1] != first.points[i])
+            for (; face < faces.points.size() && faces.points[face] == first.points[i]; ++face)
+                all.add(faces, face, 2);
+    }
+    return all;
+}
 
 LitVoxels light_voxels(std::span<const std::uint64_t> points, std::span<const std::uint8_t> cells,
                        const ReceivedLight& received, const std::vector<voxelize::TableMaterial>& materials,
                        const Daylight& daylight) {
     const std::array<double, 256>& linear = voxelize::SrgbCurve::get().linear();
-    const double strength = daylight.sun_light(), mean_sky = (daylight.sky[0] + daylight.sky[1] + daylight.sky[2]) / 3;
-    const auto sun = [&](std::size_t i) { return static_cast<double>(received.sun[i]) / kSumOfUnitLight; };
-    const auto sky = [&](std::size_t i) {
-        return static_cast<double>(received.sky[i]) /
-               (kWeight * static_cast<double>(std::max<std::int64_t>(received.open_sky[i], 1)));
-    };
-    const auto total = [&](std::size_t i) { return strength * sun(i) + mean_sky * sky(i); };
+    const VoxelLight light(received, daylight);
     LitVoxels lit;
     for (std::size_t i = 0, next; i < points.size(); i = next) {
-        next = i + 1;
         std::size_t best = i;
-        if (next < points.size() && points[next] == points[i]) { // both sides of a voxel follow one another
-            best = total(next) > total(i) ? next : i;
-            ++next;
-        }
+        for (next = i + 1; next < points.size() && points[next] == points[i]; ++next) // all of a voxel
+            if (light.total(next) > light.total(best))
+                best = next;
         const voxelize::TableMaterial& material = materials.at(cells[points[i]]);
         if (material.mirror)
             continue;
         voxelize::Srgb colour;
         for (int channel = 0; channel < 3; ++channel) {
-            const double light = strength * sun(best) + sky(best) * daylight.sky[channel];
-            colour[channel] = voxelize::srgb_from_linear(linear[material.colour[channel]] * light);
+            const double channel_light = light.sun(best) + light.sky(best) * daylight.sky[channel];
+            colour[channel] = voxelize::srgb_from_linear(linear[material.colour[channel]] * channel_light);
         }
         lit.rows.push_back(points[i]);
-        lit.sun.push_back(strength * sun(best));
-        lit.sky.push_back(sky(best));
+        lit.sun.push_back(light.sun(best));
+        lit.sky.push_back(light.sky(best));
         lit.colours.push_back(colour);
     }
     return lit;

@@ -39,6 +39,26 @@ struct ReceivedLight {
     std::span<const std::int64_t> sky;
     std::span<const std::int64_t> open_sky; // what they would receive if nothing were in the way
 };
+
+// The light of all points of a surface. A voxel that gets less than a tenth of the light of the sun and an open sky has
+// further points: half of the light beyond each of its exposed faces. For where surfaces crowd, as pebbles do, the
+// normals of those near a voxel may face the ground although the voxel is open to the sky.
+struct MeasuredLight {
+    std::vector<std::uint64_t> points; // the voxel of each, ascending
+    std::vector<std::int64_t> sun, sky, open_sky;
+    ReceivedLight view() const { return {sun, sky, open_sky}; }
+
+    // Adds a point of another, with its light divided by `part`.
+    void add(const MeasuredLight& other, std::size_t i, std::int64_t part) {
+        points.push_back(other.points[i]);
+        sun.push_back(other.sun[i] / part);
+        sky.push_back(other.sky[i] / part);
+        open_sky.push_back(other.open_sky[i]);
+    }
+};
+MeasuredLight measure_light(const octree::VerifiedMemory& memory, std::span<const std::uint64_t> brick_codes,
+                            const SurfacePoints& points, const Daylight& daylight, int threads);
+
 LitVoxels light_voxels(std::span<const std::uint64_t> points, std::span<const std::uint8_t> cells,
                        const ReceivedLight& received, const std::vector<voxelize::TableMaterial>& materials,
                        const Daylight& daylight);

@@ -334,4 +334,29 @@ SurfacePoints surface_points(const octree::VerifiedMemory& memory, const Exposed
     return out;
 }
 
+SurfacePoints face_points(const octree::VerifiedMemory& memory, std::span<const std::uint64_t> brick_codes,
+                          std::span<const std::uint64_t> voxels) {
+    SurfacePoints out;
+    for (const std::uint64_t voxel : voxels) {
+        const std::array<std::int64_t, 3> corner = corner_of(brick_codes[voxel / kBrickVoxels]);
+        const std::array<int, 3> place = place_of(voxel % kBrickVoxels);
+        voxelize::count_work(kTriangleWork);
+        for (unsigned face = 0; face < 6; ++face) {
+            const int towards = face & 1 ? 1 : -1;
+            std::array<std::int64_t, 3> beyond{corner[0] + place[0], corner[1] + place[1], corner[2] + place[2]};
+            beyond[face / 2] += towards;
+            std::uint8_t material = 0;
+            octree::materials_at(memory.memory(), beyond.data(), 1, &material);
+            if (material != 0)
+                continue;
+            out.voxels.push_back(voxel);
+            for (unsigned axis = 0; axis < 3; ++axis) {
+                out.origins.push_back(static_cast<std::int32_t>(beyond[axis]));
+                out.normals.push_back(static_cast<std::int16_t>(axis == face / 2 ? towards * kUnitNormal : 0));
+            }
+        }
+    }
+    return out;
+}
+
 } // namespace voxrt::sim

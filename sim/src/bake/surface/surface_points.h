@@ -5,6 +5,7 @@
 #include "exposed_bricks.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace voxrt::sim {
@@ -33,5 +34,9 @@ struct SurfacePoints {
 // voxel beyond the exposed face that faces the normal most.
 SurfacePoints surface_points(const octree::VerifiedMemory& memory, const ExposedBricks& bricks,
                              const Triangles& triangles, int threads);
+
+// A point beyond each exposed face of some voxels, with the normal of that face. `voxels`: numbers as above.
+SurfacePoints face_points(const octree::VerifiedMemory& memory, std::span<const std::uint64_t> brick_codes,
+                          std::span<const std::uint64_t> voxels);
 
 } // namespace voxrt::sim
