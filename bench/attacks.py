@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import json
 import struct
 import subprocess
 import sys
@@ -21,8 +22,9 @@ from voxrt.serve.packets import CHUNK_LIMIT, Chunk, pack_chunk
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "tests"))
 from fakes import floods
-from fakes.blob import blob_of
+from fakes.blob import blob_of, rewritten
 from fakes.device import never_merged, scene
+from fakes.usd_arcs import arcs
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Awaitable, Callable
@@ -173,6 +175,55 @@ async def names(target: Target) -> None:
                 raise AssertionError(name)
 
 
+async def files_outside(target: Target) -> None:
+    """Name files of the server by every way of USD, and by those of the other formats."""
+    for outside in ("/etc/passwd", "/etc/nosuchfile", "../other/geo.usda"):
+        for text in arcs(outside).values():
+            await _refused(target, {"stage.usda": text.encode()}, "is outside the file's folder")
+        gltf = {"asset": {"version": "2.0"}, "buffers": [{"uri": outside, "byteLength": 4}]}
+        await _refused(target, {"a.gltf": json.dumps(gltf).encode()}, "is outside the asset's folder")
+
+
+async def long_names(target: Target) -> None:
+    named = rewritten(blob_of(scene("x")), b"NAME", b"n" * (1 << 20))
+    await _refused(target, {"x.blob": named}, "characters are no name")
+
+
+async def rays_in_a_void(target: Target) -> None:
+    """Cast rays that visit every level of empty space; viewers that ask for more leave before the answer."""
+    async with target.turn:
+        for _ in range(50):
+            await target.controller.request("ray", origin=[16, 16, 16], direction=[8191, 8190, 8189])
+
+
+async def memory_by_the_square(target: Target) -> None:
+    corners = b"\n".join(b"v %d %d 0" % (x * x % 7919, x * x * x % 6007) for x in range(70_000))
+    for name, data, problem in (
+        ("a.toml", b"a." * 100_000 + b"a=1", "parts; use"),
+        ("a.obj", corners + b"\nf " + b" ".join(b"%d" % x for x in range(1, 70_001)), "export it as triangles"),
+    ):
+        await _refused(target, {name: data}, problem)
+
+
+async def repeated_headers(target: Target) -> None:
+    for name in (b"Host", b"Origin", b"Authorization"):
+        async with _socket(target.port) as (reader, writer):
+            writer.write(b"GET /v2 HTTP/1.1\r\n" + 2 * (name + b": 127.0.0.1\r\n") + b"\r\n")
+            with contextlib.suppress(TimeoutError):
+                answer = await asyncio.wait_for(reader.read(1000), SECONDS)
+                assert answer.startswith(b"HTTP/1.1 400 ") or not answer, answer
+
+
+async def long_texts(target: Target) -> None:
+    """Send text messages that are longer than any request; each ends its connection."""
+    for _ in range(10):
+        with contextlib.suppress(ConnectionClosed, InvalidHandshake, OSError):
+            async with connect(f"ws://127.0.0.1:{target.port}/v2", proxy=None, compression=None) as client:
+                await client.send("[" + "1," * 100_000 + "1]")
+                while True:
+                    await client.recv()
+
+
 ATTACKS: dict[str, Callable[[Target], Awaitable[None]]] = {
     "ten floods": ten_floods,
     "viewers that read nothing": read_nothing,
@@ -187,6 +238,12 @@ ATTACKS: dict[str, Callable[[Target], Awaitable[None]]] = {
     "builds that are cancelled": cancelled_builds,
     "incomplete uploads": incomplete_uploads,
     "names that are none": names,
+    "files outside of the folder": files_outside,
+    "names of a megabyte": long_names,
+    "rays in a void": rays_in_a_void,
+    "memory by the square": memory_by_the_square,
+    "headers that come twice": repeated_headers,
+    "texts that are too long": long_texts,
 }
 
 

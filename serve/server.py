@@ -180,6 +180,10 @@ class FrameServer:
             headers["Content-Length"] = str(len(file.data))
             headers["Connection"] = "close"
             return Response(200, "OK", headers, file.data)
+        for name in ("Host", "Origin", "Authorization"):
+            if len(request.headers.get_all(name)) > 1:
+                self.refused += 1
+                return connection.respond(400, f"the header {name} comes more than once\n")
         origin = request.headers.get("Origin")
         if "Upgrade" not in request.headers and "Host" in request.headers:
             # The page asks why it was refused, which browsers do not tell it.

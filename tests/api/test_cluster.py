@@ -5,9 +5,11 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import socket
 import subprocess
 import sys
-from contextlib import contextmanager, nullcontext
+import threading
+from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
 
 import pytest
@@ -217,6 +219,68 @@ def test_a_scheduler_that_is_not_there_is_one_line(tmp_path, monkeypatch):
     with pytest.raises(voxrt.ToolError, match=r"tcp://127.0.0.1:9: no scheduler with a worker answers") as refused:
         voxrt.build(EXAMPLES / "dog.usda", tmp_path / "dog.mem", depth=DEPTH, scheduler="tcp://127.0.0.1:9")
     assert "\n" not in str(refused.value)
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="stops a process as POSIX does")
+def test_a_worker_that_is_stopped_is_told(alone, tmp_path, monkeypatch):
+    monkeypatch.setattr("voxrt.plans.dask_workers._SILENCE", 2.0)
+    with scheduler(tmp_path, 1) as (address, processes):
+        told = []
+
+        def look(progress):
+            told.append(progress.silent)
+            if len(told) == 1:
+                processes[1].send_signal(signal.SIGSTOP)
+            elif progress.silent:
+                processes[1].send_signal(signal.SIGCONT)
+
+        built = voxrt.build(
+            EXAMPLES / "dog.usda", tmp_path / "out" / "dog.mem", depth=DEPTH, scheduler=address, clustered=look
+        )
+    assert 1 in told
+    same(built, alone)
+
+
+@contextmanager
+def answering(data):
+    """A port that accepts, sends `data`, and says no more."""
+    with socket.create_server(("127.0.0.1", 0)) as port:
+        accepted = []
+
+        def accept():
+            with suppress(OSError):
+                while True:
+                    accepted.append(port.accept()[0])
+                    accepted[-1].sendall(data)
+
+        thread = threading.Thread(target=accept, daemon=True)
+        thread.start()
+        yield f"127.0.0.1:{port.getsockname()[1]}"
+        port.shutdown(socket.SHUT_RDWR)
+        thread.join(LIMIT)
+        for one in accepted:
+            one.close()
+
+
+@pytest.mark.parametrize(
+    ("data", "problem"),
+    [
+        (b"", "nothing came within 2 s"),
+        (b"HTTP/1.1 200 OK\r\nContent-Length: 5\r\n\r\nhello", "something else is there"),
+        (bytes(range(256)) * 20, "something else is there"),
+        (b"\xff" * 64, "no scheduler"),
+    ],
+)
+def test_a_port_where_no_scheduler_is_is_one_line(tmp_path, monkeypatch, data, problem):
+    monkeypatch.setattr("voxrt.plans.dask_workers._WAIT", 2.0)
+    with answering(data) as address, pytest.raises(voxrt.ToolError, match=problem) as refused:
+        voxrt.build(EXAMPLES / "dog.usda", tmp_path / "dog.mem", depth=DEPTH, scheduler=f"tcp://{address}")
+    assert "\n" not in str(refused.value)
+
+
+def test_tls_without_certificates_is_one_line(tmp_path):
+    with pytest.raises(voxrt.ToolError, match="Dask has no certificates for TLS; name them in Dask's configuration"):
+        voxrt.build(EXAMPLES / "dog.usda", tmp_path / "dog.mem", depth=DEPTH, scheduler="tls://127.0.0.1:9")
 
 
 def test_a_worker_that_finds_another_asset_is_refused(tmp_path):

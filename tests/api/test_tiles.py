@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import sys
 from contextlib import suppress
@@ -110,6 +111,30 @@ def test_a_damaged_tile_is_made_anew(at_once, tmp_path):
     assert words_of(tmp_path) == at_once
 
 
+FORGERIES = {
+    "an overlap": lambda tile: Tile(octree.Octree(DEPTH, np.full(1, 0xFFFFFF01, np.uint32)), tile.tallies),
+    "another world": lambda tile: Tile(octree.Octree(DEPTH - 1, tile.octree.words), tile.tallies),
+    "an object too many": lambda tile: Tile(tile.octree, np.array([[7, 1, 0, 0, 1]])),
+    "no object": lambda tile: Tile(tile.octree, np.array([[-1, 1, 0, 0, 1]])),
+    "negative counts": lambda tile: Tile(tile.octree, np.array([[0, -1, 0, 0, 1]])),
+}
+
+
+@pytest.mark.parametrize("kind", FORGERIES)
+def test_a_forged_tile_is_one_line_that_says_what_to_remove(ball, at_once, tmp_path, kind):
+    run(tmp_path, 9, moment=5)
+    folder = tmp_path / "ball.tiles"
+    key = (folder / "key").read_text().split()[0]
+    path = max(folder.glob("*.tile"), key=lambda one: one.stat().st_size)
+    write_tile(path, key, FORGERIES[kind](read_tile(path, key)))
+    for _ in range(2):
+        with pytest.raises(OutputError, match=r"not what its build writes; remove the folder of the tiles"):
+            voxrt.build(ball, tmp_path / "ball.mem", depth=DEPTH, memory=LITTLE)
+    shutil.rmtree(folder)
+    voxrt.build(ball, tmp_path / "ball.mem", depth=DEPTH, memory=LITTLE)
+    assert words_of(tmp_path) == at_once
+
+
 def test_what_an_unsound_build_made_goes(ball, tmp_path):
     with pytest.raises(voxrt.DoesNotFitError, match="empty"):
         voxrt.build(ball, tmp_path / "ball.mem", depth=DEPTH, memory=LITTLE, bounds=(9, 9, 9, 12, 12, 12))
@@ -162,6 +187,17 @@ def test_links_to_folders_of_others_are_not_followed(ball, tmp_path):
     with pytest.raises(OutputError, match="no build put there"):
         voxrt.build(ball, tmp_path / "ball.mem", depth=DEPTH, memory=LITTLE)
     assert (other / "key").read_bytes() == b"0" * 32 + b" 128\n"
+
+
+def test_a_build_at_once_removes_the_tiles_of_one_that_was_killed(ball, at_once, tmp_path):
+    run(tmp_path, 9, moment=5)
+    assert (tmp_path / "ball.tiles").exists()
+    (tmp_path / "ball.tiles" / "map-1.tile").write_text("mine")
+    voxrt.build(ball, tmp_path / "ball.mem", depth=DEPTH, memory=1 << 40)
+    assert words_of(tmp_path) == at_once
+    assert left(tmp_path / "ball.tiles") == ["map-1.tile"]
+    voxrt.build(ball, tmp_path / "ball.mem", depth=DEPTH, memory=1 << 40)
+    assert left(tmp_path / "ball.tiles") == ["map-1.tile"]
 
 
 def test_files_of_others_in_the_folder_of_a_build_stay(ball, at_once, tmp_path):

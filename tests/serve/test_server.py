@@ -207,6 +207,17 @@ async def test_page():
         assert b"pages of http://x may not connect; start the server with --origin http://x" in refused
 
 
+@pytest.mark.parametrize("name", [b"Host", b"Origin", b"Authorization"])
+async def test_headers_that_come_twice_are_refused(name):
+    upgrade = b"Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: "
+    async with served() as server:
+        for end in (b"", upgrade + b"AAAAAAAAAAAAAAAAAAAAAA==\r\n"):
+            twice = name + b": 127.0.0.1\r\n" + name.lower() + b": 127.0.0.1\r\n"
+            answer = await http(server.port, b"GET /v2 HTTP/1.1\r\n" + twice + end + b"\r\n")
+            assert answer.startswith(b"HTTP/1.1 400 ")
+            assert b"the header " + name + b" comes more than once" in answer
+
+
 async def test_malformed_and_excess_connections():
     """Malformed, truncated, oversized and abandoned connections, and too many; a correct client still gets frames."""
     random = np.random.default_rng(7)

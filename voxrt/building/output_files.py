@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,6 +14,10 @@ from voxrt.voxelize.formats.external_files import as_text
 
 if TYPE_CHECKING:
     import os
+
+
+_FILE = re.compile(r"\.[A-Za-z]\w{0,4}")
+"""Suffixes by which a name means a file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +48,11 @@ def output_files(
         named = path.suffix.lower() in WORD_SUFFIXES and not path.is_dir()
         if named:
             name = as_text(path.stem)
+        elif _FILE.fullmatch(path.suffix) and not path.exists():
+            raise OutputError(
+                f"{path}: {path.suffix} is no format of memories; name a file with one of {', '.join(WORD_SUFFIXES)}, "
+                "or a folder; one with such a name must be there already"
+            )
         words = path if named else path / f"{name}.mem"
         check_folder(words.parent)
     picture = None

@@ -117,12 +117,12 @@ class BuildOptions:
         "Bake light: every voxel at the surface gets the colour that it has under the sun and the sky. The memory "
         "is then shown flat, with up to 254 colours.", is_rare=True, manifest="always")
     sun: tuple[float, float, float] = option(notations.DIRECTION, (1.0, 3.0, 2.0), COLOUR,
-        "With {bake}: the direction towards the sun, x, y and z. Zeros for no sun.", is_rare=True)
+        "With {bake}: the direction towards the sun, x, y and z. Zeros for no sun.", is_rare=True, goes_with="bake")
     sky: float | str = option(notations.SKY, 0.4, COLOUR,
         "With {bake}: the light of the sky, as a strength such as 0.4 or as a colour such as #9db4d0. The sun has "
-        "0.65.", is_rare=True)
+        "0.65.", is_rare=True, goes_with="bake")
     bake_samples: int = option(whole(1, 4096), 64, COLOUR,
-        "With {bake}: rays to the sky per voxel, 1 to 4096.", is_rare=True)
+        "With {bake}: rays to the sky per voxel, 1 to 4096.", is_rare=True, goes_with="bake")
     ignore: Sequence[str] = option(texts("NAME"), (), CONTENT,
         "Names of objects to leave out. A prim path of a USD file leaves out all below it, too.",
         is_rare=True, manifest="changed")
@@ -144,18 +144,19 @@ class BuildOptions:
         "Render a picture of the whole scene to the given PNG file, or to NAME.preview.png in the output folder.",
         details="It has the scene's own light if there is one.",
         python="In Python, True asks for NAME.preview.png.")
-    size: tuple[int, int] = SIZE.field(help="Width and height of the preview in pixels.", group=PREVIEW, is_rare=True)
+    size: tuple[int, int] = SIZE.field(group=PREVIEW, is_rare=True, goes_with="preview",
+        help="Width and height of the preview in pixels.")
     camera: str | None = option(text("NAME"), None, PREVIEW,
         "The author's camera for the preview and for boards, by name or by number, counted from 0 (glTF, USD). The "
         "default is the first. Without one, pictures show the whole scene from the front right and above.",
         is_rare=True)
-    samples: int | None = SAMPLES.field(group=PREVIEW, default=None, is_rare=True,
+    samples: int | None = SAMPLES.field(group=PREVIEW, default=None, is_rare=True, goes_with="preview",
         help="Rays per pixel of the preview on each axis: 1, 2 or 4. More than one smooths the edges. The default is "
         "4, or 1 with rtl.")
-    background: str | tuple[int, int, int] | None = BACKGROUND.field(group=PREVIEW, is_rare=True,
+    background: str | tuple[int, int, int] | None = BACKGROUND.field(group=PREVIEW, is_rare=True, goes_with="preview",
         help="The background of the preview: light, dark, transparent, or a colour such as #204060. The default is "
         "the background that the scene names, or light.")
-    engine: Engine = ENGINE.field(group=PREVIEW, default="model", is_rare=True,
+    engine: Engine = ENGINE.field(group=PREVIEW, default="model", is_rare=True, goes_with="preview",
         help="What renders the preview. model: the exact C++ model, which is fast. rtl: the verilated hardware, which "
         "counts its clock cycles. Both give the same pixels.")
     strict: bool = option(FLAG, False, RUNNING, "Refuse an asset that would otherwise cause a warning.", is_rare=True)

@@ -38,6 +38,7 @@ class Option:
     flags: tuple[str, ...] = ()  # its names on the command line; without them, the name of the field with dashes
     metavar: str = ""  # what its value is called; that of its kind if it is empty
     python: str = ""  # what is to be said of it in Python alone
+    goes_with: str = ""  # the option without which this one has no effect: a command line needs both
     is_rare: bool = False  # the short help of a command names it alone, without its text
     manifest: Literal["never", "always", "changed"] = "never"  # whether a manifest names it; changed: not the default
 

@@ -50,6 +50,7 @@ class ClusterProgress:
     tiles: int  # all of them
     workers: int  # that are connected
     bytes: int  # of the finished tiles
+    silent: int = 0  # workers that have not been heard of for a quarter of a minute
 
 
 def run_by_workers(
@@ -114,11 +115,15 @@ def _made(
     places = [(block.x // block.side, block.y // block.side) for block in objects]
     made: dict[tuple[int, int], TileDone] = {}
     size = 0
-    for number, tile in workers.completed(partial(make_tile, job), list(objects.items())):
+
+    def report() -> None:
+        if clustered is not None:
+            clustered(ClusterProgress(len(made), len(places), workers.count, size, workers.silent))
+
+    for number, tile in workers.completed(partial(make_tile, job), list(objects.items()), waiting=report):
         made[places[number]] = tile
         size += tile.bytes
-        if clustered is not None:
-            clustered(ClusterProgress(len(made), len(places), workers.count, size))
+        report()
     pieces, level = {place: made[place] for place in places}, 0
     while workers.count >= JOINERS and len(pieces) > MOST_PIECES:
         level += 1

@@ -45,7 +45,11 @@ class LocalWorkers(Workers):
     """So many processes of this machine, each of which does one task at a time."""
 
     def completed(
-        self, task: Callable[..., T], calls: Sequence[tuple[object, ...]], shared: tuple[object, ...] = ()
+        self,
+        task: Callable[..., T],
+        calls: Sequence[tuple[object, ...]],
+        shared: tuple[object, ...] = (),
+        waiting: Callable[[], None] | None = None,  # noqa: ARG002 - a process of this machine that ends is noticed
     ) -> Iterator[tuple[int, T]]:
         """Do tasks, those of killed processes again."""
         left, lost = dict(enumerate(calls)), 0

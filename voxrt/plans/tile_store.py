@@ -43,6 +43,7 @@ _KEY = re.compile(rb"(?P<key>[0-9a-f]{32}) (?P<side>[0-9]{1,6})\n")
 _TEMPORARY = re.compile(r"\.(?:key|[0-9]+-[0-9]+\.tile)\.[0-9a-f]{8}\.tmp")  # as write_atomically names them
 _TALLIES = 5  # numbers per row: the object, and its tally
 _BYTES_OF_BLOCK = 32
+_FORGED = "a finished tile is not what its build writes; remove the folder of the tiles, NAME.tiles, and build again"
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -72,11 +73,15 @@ def sparse_tallies(tallies: NDArray[np.int64]) -> NDArray[np.int64]:
 def sum_tallies(tallies: NDArray[np.int64], objects: int) -> NDArray[np.int64]:
     """Return the sum of rows of tallies by object: from shape (N, 5) to (O, 4).
 
+    OutputError where an object is none of the scene's, or counts are negative: no build of the scene wrote the rows.
+
     Examples
     --------
     >>> sum_tallies(np.array([[1, 7, 0, 0, 1], [1, 2, 0, 0, 1]]), 2).tolist()
     [[0, 0, 0, 0], [9, 0, 0, 2]]
     """
+    if tallies.size and (tallies.min() < 0 or tallies[:, 0].max() >= objects):
+        raise OutputError(_FORGED)
     total = np.zeros((objects, 4), np.int64)
     np.add.at(total, tallies[:, 0], tallies[:, 1:])
     return total
@@ -108,10 +113,21 @@ def read_tile(path: Path, key: str) -> Tile | None:
     if (magic, own.hex()) != (_MAGIC, key) or _CRC32.pack(zlib.crc32(body.data)) != end.tobytes():
         return None
     split = _HEADER.size + 8 * _TALLIES * rows
-    if len(body) != split + 4 * words:
+    if rows < 0 or words < 1 or len(body) != split + 4 * words:
         return None
     tallies = body[_HEADER.size : split].view("<i8").astype(np.int64).reshape(-1, _TALLIES)
-    return Tile(Octree(depth, body[split:].view("<u4").astype(np.uint32, copy=False)), tallies)
+    try:
+        return Tile(Octree(depth, body[split:].view("<u4").astype(np.uint32, copy=False)), tallies)
+    except ValueError:  # no octree
+        return None
+
+
+def add_tile(whole: Assembly | DiskAssembly, tile: Tile) -> None:
+    """Join a tile to those before it; OutputError where it is not disjoint from them, or of another world."""
+    try:
+        whole.add(tile.octree)
+    except ValueError:
+        raise OutputError(_FORGED) from None
 
 
 def tile_name(block: ColumnBlock) -> str:
@@ -182,6 +198,8 @@ class TileStore:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         if self._lock is None:
+            if kind is None:
+                self._remove_forgotten()
             return
         self.words.unlink(missing_ok=True)  # the lock was taken: the folder is that of a build
         if kind is None or issubclass(kind, AssetError | DoesNotFitError):
@@ -258,7 +276,7 @@ class TileStore:
                 tile = self.read(name)
                 if tile is None:
                     raise OutputError(self.missing(name))
-                whole.add(tile.octree)
+                add_tile(whole, tile)
             return whole.octree() if isinstance(whole, Assembly) else whole.octree(self.words)
         except OSError as error:
             raise _unwritten(self.folder, error) from error
@@ -290,6 +308,18 @@ class TileStore:
             path.unlink(missing_ok=True)
         with suppress(OSError):  # somebody else put a file there
             self.folder.rmdir()
+
+    def _remove_forgotten(self) -> None:
+        """Remove the tiles that a killed build left for an output which is complete now, made without them."""
+        with suppress(OSError):
+            lock = os.open(self.folder, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0))
+            try:
+                if fcntl is not None:
+                    fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                if _KEY.fullmatch(_first_bytes(self._key_file, 64)):
+                    self._remove()
+            finally:
+                os.close(lock)
 
     def _own_files(self) -> list[Path]:
         tiles = [path for path in self.folder.glob("*.tile") if _first_bytes(path, len(_MAGIC)) == _MAGIC]

@@ -18,7 +18,7 @@ from voxrt import octree, voxelize
 from voxrt.errors import ToolError
 from voxrt.octree import _native as octree_native
 from voxrt.plans.stage_clock import StageClock
-from voxrt.plans.tile_store import Tile, sparse_tallies, sum_tallies, tile_name
+from voxrt.plans.tile_store import Tile, add_tile, sparse_tallies, sum_tallies, tile_name
 from voxrt.voxelize import BlockVoxelizer
 from voxrt.voxelize import _native as voxelize_native
 
@@ -143,7 +143,7 @@ def _joined(job: TileJob, names: Sequence[str]) -> Tile:
         tile = job.store.read(name)
         if tile is None:
             raise ToolError(job.store.missing(name))
-        whole.add(tile.octree)
+        add_tile(whole, tile)
         rows.append(tile.tallies)
     tallies = np.concatenate(rows)
     return Tile(whole.octree(), sparse_tallies(sum_tallies(tallies, int(tallies[:, 0].max(initial=0)) + 1)))

@@ -24,11 +24,21 @@ class Workers:
         """How many workers there are now."""
         return self._count
 
+    @property
+    def silent(self) -> int:
+        """How many of them have not been heard of for so long that a user should look after them."""
+        return 0
+
     def completed(
-        self, task: Callable[..., T], calls: Sequence[tuple[object, ...]], shared: tuple[object, ...] = ()
+        self,
+        task: Callable[..., T],
+        calls: Sequence[tuple[object, ...]],
+        shared: tuple[object, ...] = (),
+        waiting: Callable[[], None] | None = None,  # noqa: ARG002 - the present process never waits
     ) -> Iterator[tuple[int, T]]:
         """Call task(*shared, *call) for each call, and yield its number and the result as tasks are done.
 
+        `waiting` is called now and then while no task is done on a cluster.
         The task is a function of a module; each process gets its `shared` arguments once. ToolError if a task fails in
         a worker, or workers are lost.
         """

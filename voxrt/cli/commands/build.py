@@ -22,7 +22,6 @@ from voxrt.cli.terminal.messages import (
 )
 from voxrt.cli.terminal.process_age import process_age
 from voxrt.cli.terminal.progress import build_bar
-from voxrt.options.build_options import BuildOptions
 from voxrt.plans.estimate import hardware_seconds
 
 if TYPE_CHECKING:
@@ -40,10 +39,6 @@ _NAMED = 32  # so many materials still read as a list
 def run(command: BuildCommand) -> None:
     """Build the octree memory of an asset: NAME.mem, its manifest NAME.json and a preview picture."""
     options = command.options
-    if not options.bake and any(
-        getattr(options, name) != getattr(BuildOptions, name) for name in ("sun", "sky", "bake_samples")
-    ):
-        raise UsageError("--sun, --sky and --bake-samples are of baked light: give --bake as well")
     if command.board is not None:
         if options.budget is not None:
             raise UsageError("--budget and --board exclude each other; give one of them")

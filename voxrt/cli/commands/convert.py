@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import voxrt
 from voxrt.cli.inputs.configuration import find_configuration
 from voxrt.cli.inputs.lighting import supported
-from voxrt.cli.inputs.source import read_source
+from voxrt.cli.inputs.source import is_asset, read_source
 from voxrt.cli.results.build_results import print_json
 from voxrt.cli.results.memory_results import ConvertResult
 from voxrt.cli.terminal.errors import UsageError
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 def run(options: ConvertCommand) -> None:
     """Write a memory or an asset in another format. The suffixes of the files say which."""
     target, material = options.target, _colours(options.material)
+    if material and is_asset(options.source):
+        raise UsageError(f"--material is of node listings, and {options.source.name} has materials; leave it out")
     if options.form == "core":
         if target.suffix.lower() in voxrt.WRITABLE_SUFFIXES:
             raise UsageError(f"{target}: --form core writes several files; name a folder")

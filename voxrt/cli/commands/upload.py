@@ -27,7 +27,9 @@ if TYPE_CHECKING:
 
 def run(options: UploadCommand) -> None:
     """Show another scene on a running board: its words are written, read back and compared."""
-    if (options.to is None) == (options.device is None):
+    if options.to is None and options.device is None:
+        raise UsageError("neither --to nor --device says where the board is; give one of them")
+    if options.to is not None and options.device is not None:
         raise UsageError("--to and --device exclude each other; give one of them")
     if options.rom.suffix.lower() not in {".mem", ".blob"}:
         raise UsageError(f"{options.rom}: is no .mem or .blob; build it first: voxrt build {options.rom}")

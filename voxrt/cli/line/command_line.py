@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from voxrt.options.option import Option
 
+_OUTPUT_FLAGS = ("-o", "--output")
 HELP_FLAGS = ("--help", "-h")
 
 
@@ -51,6 +52,8 @@ def read_options(command: str, arguments: Sequence[str]) -> Any:  # noqa: ANN401
     """Read the words behind a command as the table of its options; UsageError if they cannot be understood."""
     options = command_options(command)
     named = {name: option for name, option in options.items() if option.group != ARGUMENTS}
+    if "target" in options and (wrong := next((one for one in arguments if one in _OUTPUT_FLAGS), None)):
+        raise UsageError(f"there is no option {wrong}; name the file to write as the last argument, without it")
     texts, words = _split(arguments, named)
     for name, option in options.items():
         if option.group == ARGUMENTS:
@@ -59,6 +62,10 @@ def read_options(command: str, arguments: Sequence[str]) -> Any:  # noqa: ANN401
     if words:
         raise UsageError(f"{words[0]} is one argument too many")
     values = {name: _value(name, option, texts[name]) for name, option in options.items() if _has(name, option, texts)}
+    for name, option in options.items():
+        if texts[name] and option.goes_with in options and not texts[option.goes_with]:
+            flag, other = (flags_of(one, options[one])[0] for one in (name, option.goes_with))
+            raise UsageError(f"{flag} has no effect without {other}; give that as well, or leave {flag} out")
     try:
         return compose(COMMANDS[command].options(), values)
     except OptionConflictError as error:

@@ -35,6 +35,7 @@ class BuildBar:
         self._task = task
         self._stage = ""
         self._begun = 0.0
+        self._silent = 0  # workers
 
     def begin(self, stage: str) -> None:
         """Note that a stage begins."""
@@ -55,6 +56,12 @@ class BuildBar:
             f"tile {progress.done} of {progress.tiles}, {progress.workers} workers, "
             f"{progress.bytes / (1 << 20):.1f} MB of octrees"
         )
+        if progress.silent and progress.silent != self._silent:
+            note(
+                f"{progress.silent} of {progress.workers} workers have not answered for a while; look whether "
+                "they run. Dask gives their tiles to others after some minutes"
+            )
+        self._silent = progress.silent
         if is_verbose():
             note(text)
         if self._progress is not None and self._task is not None:
