@@ -225,11 +225,11 @@ def test_a_scheduler_that_is_not_there_is_one_line(tmp_path, monkeypatch):
 def test_a_worker_that_is_stopped_is_told(alone, tmp_path, monkeypatch):
     monkeypatch.setattr("voxrt.plans.dask_workers._SILENCE", 2.0)
     with scheduler(tmp_path, 1) as (address, processes):
-        told = []
+        reports = []
 
         def look(progress):
-            told.append(progress.silent)
-            if len(told) == 1:
+            reports.append(progress.silent)
+            if len(reports) == 1:
                 processes[1].send_signal(signal.SIGSTOP)
             elif progress.silent:
                 processes[1].send_signal(signal.SIGCONT)
@@ -237,7 +237,7 @@ def test_a_worker_that_is_stopped_is_told(alone, tmp_path, monkeypatch):
         built = voxrt.build(
             EXAMPLES / "dog.usda", tmp_path / "out" / "dog.mem", depth=DEPTH, scheduler=address, clustered=look
         )
-    assert 1 in told
+    assert 1 in reports
     same(built, alone)
 
 

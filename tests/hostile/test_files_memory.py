@@ -29,7 +29,7 @@ except (voxelize.AssetError, voxelize.DoesNotFitError) as error:
 """
 
 
-def said(path):
+def answer_of(path):
     """What reading a file says, in a process that may take a quarter of a gigabyte more."""
     done = subprocess.run([sys.executable, "-c", LIMITED, path], capture_output=True, text=True, check=True)
     (line,) = done.stdout.splitlines()
@@ -52,7 +52,7 @@ def test_keys_of_many_parts(tmp_path, kind):
     text, parts = KEYS[kind]
     (tmp_path / "scene.toml").write_text(text)
     line = 3 if kind == "after a string" else 1
-    assert f"line {line}: a key has {parts} parts; use 48 at most" in said(tmp_path / "scene.toml")
+    assert f"line {line}: a key has {parts} parts; use 48 at most" in answer_of(tmp_path / "scene.toml")
 
 
 @pytest.mark.parametrize(

@@ -159,7 +159,7 @@ TEXTURED = {
 @pytest.mark.parametrize("kind", [name for name in TEXTURED if name != "a.mtl"])
 @pytest.mark.parametrize("name", ["../secret/file.png", "ABSOLUTE/secret/file.png", "folder/file.png"])
 def test_no_format_tells_whether_a_file_outside_exists(tmp_path, kind, name):
-    said = []
+    message = []
     for there in (True, False):
         base = tmp_path / str(there)
         folder, secret = base / "asset", base / "secret"
@@ -175,5 +175,5 @@ def test_no_format_tells_whether_a_file_outside_exists(tmp_path, kind, name):
         except AssetError as error:
             found = [str(error)]
         assert any("outside" in one and "--allow-outside" in one for one in found), found
-        said.append([one.replace(str(base), "") for one in found])
-    assert said[0] == said[1]
+        message.append([one.replace(str(base), "") for one in found])
+    assert message[0] == message[1]

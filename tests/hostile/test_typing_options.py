@@ -188,5 +188,5 @@ def test_estimates_grow_with_the_surface():
         results += built
     assert results[0].seconds < results[1].seconds < 10
     assert results[2].seconds > 60
-    large = BuildOptions(preview=True, size=(8192, 8192))
+    large = BuildOptions(preview=True, engine="rtl", size=(8192, 8192))
     assert estimate_build(scene, fit_grid(scene, depth=4), large).seconds > 60

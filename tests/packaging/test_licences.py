@@ -13,6 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 SAID = {
     "BSD-3-Clause": ("BSD",),
+    "BSD-2-Clause": ("BSD",),
     "Apache-2.0": ("Apache",),
     "MIT": ("MIT",),
     "MIT-CMU": ("MIT-CMU", "HPND"),

@@ -26,7 +26,7 @@ _CHUNK = 1 << 25  # bytes of points that are read at once
 _LARGEST_BYTE = 255
 _AGAIN = "copy or export it again"
 
-# Of LAS 1.0 to 1.4: header, and the records before and behind the points.
+# Bytes of a header of LAS 1.0 to 1.4, and of the records before and behind the points.
 _HEADER, _RECORD, _LATE_RECORD = 227, 54, 60
 _LATE_HEADER, _LATE_VERSION = 375, 4
 _KIND, _COMPRESSED = 104, 0x80  # where the kind of points is, and its bit for LAZ
