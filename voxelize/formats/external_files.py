@@ -62,7 +62,7 @@ class ExternalFiles:
     """
 
     folder: Path  # the asset's folder, with links resolved
-    given: Path  # the asset's folder as the caller wrote it, absolute
+    written: Path  # the asset's folder as the caller wrote it, absolute
     allow_outside: bool = False  # whether files outside that folder may be opened
 
     @classmethod
@@ -90,7 +90,7 @@ class ExternalFiles:
 
     def _is_below(self, place: Path) -> bool:
         plain = Path(os.path.normpath(place))  # without a look at what is there
-        if not (plain.is_relative_to(self.folder) or plain.is_relative_to(self.given)):
+        if not (plain.is_relative_to(self.folder) or plain.is_relative_to(self.written)):
             return False
         try:
             return plain.resolve().is_relative_to(self.folder)
