@@ -67,18 +67,23 @@ class DaskWorkers(Workers):
             sent = [client.scatter(one, broadcast=True) for one in shared]  # type: ignore[no-untyped-call]
             futures = [client.submit(attempt, task, *sent, *call, pure=False) for call in calls]
             numbers = {future.key: number for number, future in enumerate(futures)}
-            finished = as_completed(futures, loop=client.loop)  # type: ignore[no-untyped-call]
+            finished = as_completed(futures, with_results=True, loop=client.loop)  # type: ignore[no-untyped-call]
             del futures  # a worker forgets the result of a future that is gone
-            for future in _watched(finished, waiting):
-                yield numbers[future.key], checked(future.result())
+            for future, result in _watched(finished, waiting):
+                if isinstance(result, BaseException):  # what was cancelled has its error as its result
+                    raise result
+                yield numbers[future.key], checked(result)
         except ToolError:
             raise
         except Exception as error:
             raise ToolError(f"the cluster is lost ({_line(error)}); {self._remedy}") from error
 
 
-def _watched(finished: as_completed, waiting: Callable[[], None] | None) -> Iterator[Future[Any]]:
-    """Yield finished tasks; call `waiting` again and again where none comes."""
+def _watched(finished: as_completed, waiting: Callable[[], None] | None) -> Iterator[tuple[Future[Any], Any]]:
+    """Yield finished tasks with their results; call `waiting` again and again where none comes.
+
+    A result may be at a worker that has been stopped meanwhile: it is fetched in the background.
+    """
     heard = monotonic()
     while not finished.is_empty():  # type: ignore[no-untyped-call]
         if finished.has_ready():  # type: ignore[no-untyped-call]
