@@ -70,8 +70,6 @@ class DaskWorkers(Workers):
             finished = as_completed(futures, with_results=True, loop=client.loop)  # type: ignore[no-untyped-call]
             del futures  # a worker forgets the result of a future that is gone
             for future, result in _watched(finished, waiting):
-                if isinstance(result, BaseException):  # what was cancelled has its error as its result
-                    raise result
                 yield numbers[future.key], checked(result)
         except ToolError:
             raise
@@ -87,7 +85,10 @@ def _watched(finished: as_completed, waiting: Callable[[], None] | None) -> Iter
     heard = monotonic()
     while not finished.is_empty():  # type: ignore[no-untyped-call]
         if finished.has_ready():  # type: ignore[no-untyped-call]
-            yield next(finished)
+            future, result = next(finished)
+            if isinstance(result, BaseException):  # what was cancelled has its error as its result
+                raise result
+            yield future, result
             heard = monotonic()
             continue
         with finished.thread_condition:
