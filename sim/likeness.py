@@ -107,7 +107,7 @@ def compare(scene: Scene, rom: Rom, camera: Camera, size: tuple[int, int]) -> Co
     Raises
     ------
     SimulatorError
-        Open3D is not installed, or the memory has no place in the scene.
+        Open3D is not installed, the memory has no place in the scene, or the scene has points in place of triangles.
 
     Examples
     --------
@@ -119,6 +119,10 @@ def compare(scene: Scene, rom: Rom, camera: Camera, size: tuple[int, int]) -> Co
     """
     if rom.grid is None:
         raise SimulatorError(f"{rom.name} does not say where it stands in its scene; build it anew, with a manifest")
+    if any(item.points is not None for item in scene.objects):
+        raise SimulatorError(
+            f"{scene.name} has points, and memories are compared with triangles; compare one with a mesh"
+        )
     directions = pixel_directions(camera, size).astype(np.float64)
     background = np.array(rom.materials[0].colour, dtype=np.uint8)
     meshes = _view_meshes(scene, rom.grid, camera, directions, background)

@@ -21,7 +21,17 @@ from voxrt.view.errors import ViewerError
 from voxrt.view.pane import Pane
 from voxrt.view.pictures import picture
 from voxrt.view.ray_table import HEADS, describe_end, describe_root, ray_table
-from voxrt.voxelize import EMPTY, AssetError, Material, Scene, assign_colours, fit_grid, voxelize
+from voxrt.voxelize import (
+    DEFAULT_COLOURS,
+    EMPTY,
+    AssetError,
+    Material,
+    Scene,
+    assign_colours,
+    fit_grid,
+    place_points,
+    voxelize,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -132,7 +142,7 @@ def _scene_png(scene: Scene) -> bytes | None:
         grid = fit_grid(scene, depth=_SCENE_DEPTH)
     except AssetError:
         return None
-    coloured = assign_colours(scene, grid)
+    coloured = assign_colours(place_points(scene, grid, colours=DEFAULT_COLOURS, fill="auto"), grid)
     return rom_png(Rom(scene.name, build(voxelize(coloured, grid).voxels), coloured.materials, grid), "material")
 
 

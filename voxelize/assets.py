@@ -43,8 +43,8 @@ _LOADERS = {
     ".vox": ("voxrt.voxelize.formats.vox.scene", "load_vox_scene", {"unit", "time"}),
     ".ply": ("voxrt.voxelize.formats.ply", "load_ply", {"up", "unit", "allow_outside", "opaque_from", "points"}),
     ".xyz": ("voxrt.voxelize.formats.points", "load_xyz", {"up", "unit", "points"}),
-    ".las": ("voxrt.voxelize.formats.points", "load_las", {"points"}),
-    ".laz": ("voxrt.voxelize.formats.points", "load_las", {"points"}),
+    ".las": ("voxrt.voxelize.formats.points", "load_las", {"unit", "points"}),
+    ".laz": ("voxrt.voxelize.formats.points", "load_las", {"unit", "points"}),
 }
 
 SUFFIXES = tuple(_LOADERS)

@@ -152,6 +152,8 @@ def _add_object(parts: SceneParts, item: SceneObject, geometry: Geometry, pow2: 
     colliders = proxies(item, geometry)
     mesh = item.mesh
     if colliders is None:
+        if item.points is not None and len(item.points.positions) and not len(mesh.triangles):
+            raise ValueError(f"object {item.name!r} has points that are on no grid: call place_points first")
         materials = np.flatnonzero(np.bincount(mesh.materials))
         only = int(materials[0]) if len(materials) == 1 and mesh.material_map is None else 0
         arrays = (mesh.positions, mesh.triangles, mesh.materials)

@@ -231,3 +231,28 @@ def test_names_of_materials_stay_unique():
 def test_wrong_clouds_are_refused(make, message):
     with pytest.raises((TypeError, ValueError), match=message):
         make()
+
+
+def test_points_that_are_on_no_grid_are_refused():
+    with pytest.raises(ValueError, match="object 'scan' has points that are on no grid: call place_points first"):
+        voxelize(scene_of(random_cloud(1)), Grid(3, (0, 0, 0), 1.0))
+    few = place_points(scene_of(random_cloud(1, least=99)), Grid(3, (0, 0, 0), 1.0), colours=3, fill="auto")
+    assert voxelize(few, Grid(3, (0, 0, 0), 1.0)).objects[0].voxels == 0
+
+
+def test_an_empty_memory_says_how_many_points_were_asked_for():
+    with pytest.raises(DoesNotFitError, match=r"no voxel holds 99 points; ask for fewer \(--points\)"):
+        voxrt.build(scene_of(random_cloud(1, least=99)), depth=3, points=99)
+
+
+def test_a_notebook_shows_points():
+    from voxrt.view import cards
+
+    shown = cards._scene_png(scene_of(random_cloud(1)))
+    assert shown != cards._scene_png(scene_of(PointCloud(np.zeros((1, 3)))))
+
+
+def test_points_are_not_compared_with_triangles():
+    built = voxrt.build(scene_of(random_cloud(1)), depth=3)
+    with pytest.raises(voxrt.SimulatorError, match="has points, and memories are compared with triangles"):
+        voxrt.compare(built.scene, built.rom, voxrt.aim_camera(built.rom, (8, 8)), (8, 8))

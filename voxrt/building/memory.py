@@ -40,7 +40,7 @@ def make_memory(
         scene = scene_on_grid(loaded, plan.grid, options)
     tree, report = run(plan, scene, clock)
     if not options.allow_empty:
-        refuse_empty(label, plan.grid, report.objects)
+        refuse_empty(label, plan.grid, report.objects, options.points)
     warnings = scene.warnings + report.warnings + crowded_out(scene, plan.grid, options)
     parts = {"voxelize": report.seconds}
     rom = octree.Rom(name, tree, scene.materials, plan.grid)

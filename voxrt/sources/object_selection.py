@@ -104,8 +104,8 @@ def _stray_message(stray: StrayParts) -> str:
     )
 
 
-def refuse_empty(label: str, grid: Grid, objects: Sequence[ObjectReport]) -> None:
-    """Refuse a scene of which no object got a voxel, with a DoesNotFitError.
+def refuse_empty(label: str, grid: Grid, objects: Sequence[ObjectReport], points: int | None = None) -> None:
+    """Refuse a scene of which no object got a voxel, with a DoesNotFitError. `points` were asked for per voxel.
 
     Examples
     --------
@@ -117,6 +117,8 @@ def refuse_empty(label: str, grid: Grid, objects: Sequence[ObjectReport]) -> Non
     """
     if any(one.voxels for one in objects):
         return
+    if points is not None:
+        raise DoesNotFitError(f"{label}: the memory is empty: no voxel holds {points} points; ask for fewer (--points)")
     raise DoesNotFitError(
         f"{label}: the memory is empty: no object has a voxel in the grid, which is "
         f"{grid.size * grid.voxel_size:.4g} m wide with voxels of {grid.voxel_size:.4g} m; repair what is far away or "

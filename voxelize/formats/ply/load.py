@@ -66,7 +66,7 @@ def load_ply(
     tables = ply.tables
     vertices, polygons = tables.get("vertex", {}), _polygons(tables)
     if polygons is None:
-        return load_points(path, vertices, scene_transform(up, unit), log, opaque_from=opaque_from, least=points)
+        return load_points(path, vertices, up, unit, log, opaque_from=opaque_from, least=points)
     if points is not None:
         log.add("ignored-option", "--points was ignored: the file has faces")
     positions, counts, corners, kept = _geometry(path, vertices, polygons, log)

@@ -10,6 +10,7 @@ from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.ply.colours import stored_colours
 from voxrt.voxelize.formats.ply.format import ListColumn, Table
 from voxrt.voxelize.formats.points.cloud_scene import cloud_scene
+from voxrt.voxelize.formats.scene_frame import scene_transform
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.warning_log import WarningLog
 
 _GAUSSIAN = {"f_dc_0", "f_dc_1", "f_dc_2", "opacity"}
+_HALF_TURN = np.diag([-1.0, -1.0, 1.0, 1.0])  # about z, as viewers of splats turn them
 _CONSTANT_HARMONIC = 0.28209479177387814
 """The spherical harmonic that is the same in all directions: Kerbl et al., "3D Gaussian Splatting", 2023."""
 
@@ -27,7 +29,8 @@ _CONSTANT_HARMONIC = 0.28209479177387814
 def load_points(
     path: Path,
     vertices: Table,
-    transform: NDArray[np.float64],
+    up: str | None,
+    unit: float | None,
     log: WarningLog,
     *,
     opaque_from: float,
@@ -35,15 +38,17 @@ def load_points(
 ) -> Scene:
     """Return the scene of vertices that are points: those of an opacity of `opaque_from` or more.
 
-    `transform` leads from the file's frame to the scene's; `least` points make a voxel solid. AssetError where there
-    are none.
+    `up` and `unit` are as for :func:`load_ply`; `least` points make a voxel solid. AssetError where there are none.
     """
-    positions = places(path, vertices)
+    positions, transform = places(path, vertices), scene_transform(up, unit)
     colours: NDArray[np.uint8] | None
     if not len(positions):
         raise AssetError(path, "has neither faces nor points", fix="export it again")
     if vertices.keys() >= _GAUSSIAN:
         log.add("gaussian-splat", "the file is a Gaussian splat: the centres of its Gaussians were taken as points")
+        if up is None:
+            log.add("up-axis", "y points down in most Gaussian splats: the scene was turned; --up y leaves it as it is")
+            transform = transform @ _HALF_TURN
         colours, opacity = _of_gaussians(vertices)
     else:
         colours, opacity = stored_colours(vertices, log) or (None, np.ones(len(positions)))

@@ -45,13 +45,15 @@ with laspy.open(sys.argv[1]) as source, laspy.open(sys.argv[2], "w", header=sour
 """
 
 
-def load_las(path: str | Path, *, points: int | None = None) -> Scene:
-    """Read a LAS or LAZ file: the points that are not withheld, with their colours. Metres, z up.
+def load_las(path: str | Path, *, unit: float | None = None, points: int | None = None) -> Scene:
+    """Read a LAS or LAZ file: the points that are not withheld, with their colours. z is up.
 
     Parameters
     ----------
     path
         The file.
+    unit
+        Metres per unit of the file; None for 1. The file's coordinate system is not read.
     points
         How many points make a voxel solid; None for 1.
 
@@ -93,10 +95,10 @@ def load_las(path: str | Path, *, points: int | None = None) -> Scene:
     except Exception as error:  # noqa: BLE001 - it raises whatever its parsers do
         raise AssetError(path, f"laspy cannot read it ({type(error).__name__})", fix=_AGAIN) from None
     positions, stored = np.concatenate(places), np.concatenate(colours)
-    # The format has 16 bits; many programs write 8.
-    full = 1 if stored.max(initial=0) <= _LARGEST_BYTE else _LARGEST_BYTE + 2
-    rgb = np.round(stored / full).astype(np.uint8) if has_colours and stored.any() else None
-    return cloud_scene(path, positions, rgb, scene_transform("z", None), least=points, log=WarningLog())
+    # The format has bytes times 256; many programs write bytes.
+    shift = 0 if stored.max(initial=0) <= _LARGEST_BYTE else 8
+    rgb = (stored >> shift).astype(np.uint8) if has_colours and stored.any() else None
+    return cloud_scene(path, positions, rgb, scene_transform("z", unit), least=points, log=WarningLog())
 
 
 def _unpacked(path: Path, data: bytes) -> bytes:

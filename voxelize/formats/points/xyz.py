@@ -21,11 +21,12 @@ if TYPE_CHECKING:
 
     from voxrt.voxelize.scene import Scene
 
-_PLACE, _COLOURED = 3, 6
-_COMMENT = re.compile(rb"[#/][^\n]*")
+_COMMENT = re.compile(rb"(?:#|//)[^\n]*")
 _SEPARATORS = bytes.maketrans(b",;\t\r", b"    ")
 _DECIMAL_COMMA = re.compile(rb"[+-]?\d*,\d+")
-_LARGEST_BYTE = 255.0
+_PLACE = 3  # numbers
+_LARGEST_BYTE, _LARGEST_WORD = 255.0, 65535.0
+_OF_UNIT_LENGTH = 0.01  # normals differ from it by less
 _PART = 1 << 24  # bytes of text that are read at once
 _SHOWN = 40
 _BLANK, _NEW_LINE = 32, 10
@@ -35,8 +36,8 @@ def load_xyz(path: str | Path, *, up: str | None = None, unit: float | None = No
     """Read rows of numbers: x, y, z; then red, green and blue, 0 to 255, or 0 to 1 where none is larger.
 
     Numbers are apart by blanks, tabs, commas or semicolons. Text after ``#`` or ``//`` is a comment, a first row of
-    names is left out, and a first row of one number is the number of points. What follows the place, or the colour, is
-    left out and counted; so is a number alone between them, as scanners write an intensity.
+    names is left out, and a first row of one number is the number of points. An intensity or a normal may stand between
+    the place and the colour. It is left out and counted, and so is what follows.
 
     Parameters
     ----------
@@ -62,16 +63,30 @@ def load_xyz(path: str | Path, *, up: str | None = None, unit: float | None = No
     path = Path(path)
     log = WarningLog()
     rows = _rows(path, read_asset(path))
-    rgb = None
-    if rows.shape[1] >= _COLOURED:
-        first = _PLACE if rows.shape[1] != _COLOURED + 1 else _PLACE + 1
-        colour = rows[:, first : first + 3]
-        full = 1.0 if (colour <= 1.0).all() else _LARGEST_BYTE
-        rgb = np.round(np.clip(np.nan_to_num(colour) / full, 0, 1) * _LARGEST_BYTE).astype(np.uint8)
-    left = rows.shape[1] - (_PLACE if rgb is None else _COLOURED)
+    rgb = _colours(rows)
+    left = rows.shape[1] - _PLACE - (0 if rgb is None else 3)
     if left:
         log.add("point-attributes", "numbers of a point besides its place and its colour were left out", left)
     return cloud_scene(path, rows[:, :3], rgb, scene_transform(up or "z", unit), least=points, log=log)
+
+
+def _colours(rows: NDArray[np.float64]) -> NDArray[np.uint8] | None:
+    """Return the colours of points, uint8, shape (N, 3); None where no three numbers of theirs can be colours.
+
+    Many programs write normals where others write colours: they have numbers below 0, or all of them unit length.
+    """
+    before = (1,) if rows.shape[1] == _PLACE + 4 else (0, 3)  # an intensity; nothing, or a normal
+    for first in (_PLACE + count for count in before):
+        colours = rows[:, first : first + 3]
+        if colours.shape[1] < 3 or not ((colours >= 0) & (colours <= _LARGEST_WORD)).all():
+            continue
+        if (np.abs((colours**2).sum(axis=1) - 1) < _OF_UNIT_LENGTH).all():
+            continue
+        most = colours.max(initial=0)
+        if most > _LARGEST_BYTE:
+            return (colours // 256).astype(np.uint8)
+        return np.round(colours if most > 1 else colours * _LARGEST_BYTE).astype(np.uint8)
+    return None
 
 
 def _rows(path: Path, data: bytes) -> NDArray[np.float64]:

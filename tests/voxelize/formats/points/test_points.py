@@ -47,6 +47,27 @@ def test_rows_without_colours_with_reals_and_with_more(tmp_path):
     assert (points.colours, warning.kind) == (None, "point-attributes")
 
 
+def test_normals_are_no_colours(tmp_path):
+    normals = ["0 0 -1", "0.6 0.8 0", "0 1 0"]
+    for colours in ([], COLOURS.tolist()):
+        cells = [" ".join(map(str, rgb)) for rgb in colours] or [""] * 3
+        text = [f"{place} {normal} {rgb}" for place, normal, rgb in zip(rows(colour=""), normals, cells, strict=True)]
+        points, _, (warning,) = read(tmp_path, "\n".join(text))
+        assert (warning.kind, warning.count) == ("point-attributes", 3)
+        np.testing.assert_array_equal(points.positions, PLACES)
+        if colours:
+            np.testing.assert_array_equal(points.colours, COLOURS)
+        else:
+            assert points.colours is None
+    assert read(tmp_path, "0 0 0 0 0 1\n1 1 1 0 1 0\n")[0].colours is None  # none is below 0; all have unit length
+    assert read(tmp_path, "0 0 0 70000 0 0\n")[0].colours is None
+
+
+def test_colours_of_16_bits(tmp_path):
+    points = read(tmp_path, "0 0 0 65280 256 0\n1 1 1 65535 511 255\n")[0]
+    np.testing.assert_array_equal(points.colours, [[255, 1, 0], [255, 1, 0]])
+
+
 def test_many_rows_are_those_of_numpy(tmp_path):
     rng = np.random.default_rng(0)
     table = np.column_stack([rng.normal(size=(500_000, 3)) * 1e3, rng.integers(0, 256, (500_000, 3))])
@@ -85,13 +106,13 @@ def test_broken_places_are_left_out(tmp_path):
     assert (warning.kind, warning.count) == ("broken-point", 2)
 
 
-def las(path, depth=16, **fields):
+def las(path, factor=257, **fields):
     laspy = pytest.importorskip("laspy", reason="laspy is not installed: pip install 'voxrt-build[scan]'")
     made = laspy.create(point_format=2, file_version="1.2")
     made.header.scales, made.header.offsets = [0.001] * 3, [500_000, 5_400_000, 0]
     made.x, made.y, made.z = (PLACES + FAR).T
     for name, channel in zip(("red", "green", "blue"), COLOURS.T, strict=True):
-        made[name] = channel.astype(np.uint16) * (257 if depth == 16 else 1)
+        made[name] = channel.astype(np.uint16) * factor
     for name, value in fields.items():
         made[name] = value
     made.write(path)
@@ -99,14 +120,14 @@ def las(path, depth=16, **fields):
 
 
 @pytest.mark.parametrize("suffix", [".las", ".laz"])
-@pytest.mark.parametrize("depth", [8, 16])
-def test_las(tmp_path, suffix, depth):
+@pytest.mark.parametrize("factor", [1, 256, 257])  # bytes; as the format says; all 16 bits
+def test_las(tmp_path, suffix, factor):
     if suffix == ".laz":
         pytest.importorskip("lazrs", reason="lazrs is not installed: pip install 'voxrt-build[scan]'")
-    one = load(las(tmp_path / f"scan{suffix}", depth)).objects[0]
+    one = load(las(tmp_path / f"scan{suffix}", factor), unit=0.5).objects[0]
     np.testing.assert_allclose(one.points.positions, PLACES + FAR, atol=1e-6)
     np.testing.assert_array_equal(one.points.colours, COLOURS)
-    np.testing.assert_array_equal(one.transform @ [0, 0, 1, 1], [0, 1, 0, 1])
+    np.testing.assert_array_equal(one.transform @ [0, 0, 1, 1], [0, 0.5, 0, 1])
 
 
 def test_withheld_points_are_left_out_and_black_is_no_colour(tmp_path):
@@ -154,10 +175,14 @@ def test_gaussian_splats_are_the_centres_of_their_gaussians(tmp_path):
         [1, 1, 1, 0, 0, 0, -0.01, 1, 1],
         [2, 2, 2, 9, 9, 9, 50, 1, 1],
     ]
-    points, _, warnings = read(tmp_path, ply(names, table), "splat.ply")
+    points, transform, warnings = read(tmp_path, ply(names, table), "splat.ply")
     np.testing.assert_array_equal(points.positions, [[0, 0, 0], [2, 2, 2]])
     np.testing.assert_array_equal(points.colours, [[255, 0, 128], [255, 255, 255]])
-    assert [(one.kind, one.count) for one in warnings] == [("gaussian-splat", 1), ("transparent", 1)]
+    assert [one.kind for one in warnings] == ["gaussian-splat", "up-axis", "transparent"]
+    np.testing.assert_array_equal(transform @ [1, -1, 1, 1], [-1, 1, 1, 1])  # y points down
+    _, transform, warnings = read(tmp_path, ply(names, table), "splat.ply", up="y")
+    np.testing.assert_array_equal(transform, np.eye(4))
+    assert [one.kind for one in warnings] == ["gaussian-splat", "transparent"]
 
 
 def test_points_is_for_formats_with_points():
