@@ -163,6 +163,7 @@ def test_a_turntable_comes_around(voxrt, folder):
             "--turntable",
             *options,
         )
+    voxrt.fails(2, "choose a smaller --size", "render", "house.mem", "--turntable", "--size", "16384x16384")
     voxrt.fails(2, "or give --turntable", "render", "house.mem", "-o", "turn.webp")
 
 

@@ -17,6 +17,7 @@ from voxrt.options.render_options import RenderOptions
 from voxrt.options.view_options import CameraOptions
 from voxrt.view.animation import ANIMATION_SUFFIXES
 from voxrt.views.viewpoint import orbit
+from voxrt.voxelize.free_memory import free_memory
 
 if TYPE_CHECKING:
     from voxrt import Frame, Lighting
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from voxrt.sim import Dram
 
 _TURNS = 72  # pictures of a turntable
+_BYTES_PER_PIXEL = 9  # of an animation: colour, material and face, and what the writer of files takes
 
 
 def run(command: RenderCommand) -> None:
@@ -136,6 +138,16 @@ def _check_path(command: RenderCommand) -> None:
         raise UsageError(f"{command.output}: the pictures of a path are PNG files; name a .png")
 
 
+def _check_room(pictures: int, size: tuple[int, int]) -> None:
+    """Refuse an animation whose pictures do not fit the free memory."""
+    taken = pictures * size[0] * size[1] * _BYTES_PER_PIXEL
+    if taken > free_memory() // 2:
+        raise UsageError(
+            f"{pictures} pictures of {size[0]}x{size[1]} take {taken / (1 << 30):.1f} GB of memory, which is too much; "
+            "choose a smaller --size"
+        )
+
+
 def _is_animated(file: Path) -> bool:
     return file.suffix.lower() in ANIMATION_SUFFIXES
 
@@ -154,6 +166,7 @@ def _turn(command: RenderCommand, memory: Rom, options: RenderOptions, file: Pat
         raise UsageError(f"{file}: a turntable is a .gif, .webp or .mp4; name one of these")
     if command.background == "transparent":
         raise UsageError(f"{file}: a {file.suffix} has no transparent background; name another one")
+    _check_room(_TURNS, options.size)
     cameras = orbit(memory, options.size, _TURNS, roots=roots)
     frames = [voxrt.render(memory, camera, options, root=roots[0]) for camera in cameras]
     voxrt.save_animation([one.colour for one in frames], file)
@@ -216,6 +229,7 @@ def _roots(blob: Blob, file: Path, command: RenderCommand) -> tuple[int, ...]:
         raise UsageError("--check is of one frame: name a .png, and the frame by --frame")
     if command.background == "transparent":
         raise UsageError(f"{file}: a {file.suffix} has no transparent background; name another one")
+    _check_room(len(roots), command.size)
     return roots
 
 
