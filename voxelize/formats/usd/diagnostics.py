@@ -23,6 +23,8 @@ _AT_LINE = re.compile(r"^(?P<file>.*?):(?P<line>\d+):\d+: (?P<problem>.*)", re.D
 # How USD's bindings begin the message where Python has no type for a value.
 _NO_CONVERTER = "No to_python"
 
+_PRIM = re.compile(r"[<(]/[^<>()]*[>)]")
+
 _UNOPENED = re.compile(r"Could not open asset @(?P<asset>[^@]*)@")
 
 
@@ -45,8 +47,9 @@ def caught(path: Path, log: WarningLog) -> Iterator[None]:
         raise AssetError(path, "holds a value of a type that does not belong there", fix="export it again") from None
     finally:
         diagnostics = [_warning(_commentary(one), path) for one in delegate.TakeUncoalescedDiagnostics()]
+        alike: dict[tuple[str, str], str] = {}  # the first of those that differ in the path of the prim alone
         for kind, message in sorted(diagnostics):  # USD composes in threads, which report in any order
-            log.add(kind, message)
+            log.add(kind, alike.setdefault((kind, _PRIM.sub("", message)), message))
         del delegate
 
 

@@ -382,3 +382,12 @@ def test_damaged_stages_are_read_or_refused(tmp_path_factory, damage):
     path = tmp_path_factory.mktemp("usd") / "stage.usda"
     path.write_bytes(data)
     read_or_refused(load_usd, path)
+
+
+def test_messages_that_differ_in_the_prim_alone_are_one_warning(usd):
+    paint = 'def Material "paint" { }\n'
+    binding = "\nrel material:binding = </paint>"
+    scene = usd(paint + "".join(mesh(binding, name=f"part_{number}") for number in range(3)))
+    (found,) = [one for one in scene.warnings if one.message.startswith("USD reports")]
+    assert found.count == 3
+    assert "/part_0" in found.message
