@@ -88,18 +88,8 @@ def _write_mp4(path: Path, pictures: Iterable[NDArray[np.uint8]], milliseconds: 
         ) from error
     first, *others = pictures
     height, width = first.shape[:2]
-    pixels = (
-        "-f",
-        "rawvideo",
-        "-pix_fmt",
-        "rgb24",
-        "-s",
-        f"{width}x{height}",
-        "-r",
-        f"{1000 / milliseconds:g}",
-        "-i",
-        "-",
-    )
+    rate = f"{1000 / milliseconds:g}"
+    pixels = ("-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}", "-r", rate, "-i", "-")
     coded = ("-an", "-c:v", "libx264", "-crf", "10", "-pix_fmt", "yuv420p")
     with tempfile.TemporaryDirectory(prefix="voxrt-") as folder:
         film = Path(folder, "turntable.mp4")  # FFmpeg goes back in an MP4, so it cannot write to a pipe
