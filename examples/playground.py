@@ -92,5 +92,5 @@ if __name__ == "__main__":
     grid = voxelize.fit_grid(scene, depth=7)
     voxels = voxelize.voxelize(scene, grid).voxels
     rom = octree.Rom(scene.name, octree.build(voxels), scene.materials, grid)
-    frame = voxrt.render(rom, size=(640, 480))
+    frame = voxrt.render(rom, size=(640, 480), engine="rtl")
     print(f"{len(scene.objects)} objects, {rom.octree.blocks} blocks, {frame.cost.cycles:,} clocks per frame")

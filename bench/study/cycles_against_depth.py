@@ -23,7 +23,7 @@ for name in ("courtyard.glb", "planet.glb"):
     cycles, words = [], []
     for depth in depths:
         rom = voxrt.build(ROOT / "examples" / name, depth=depth).rom
-        cost = voxrt.render(rom, size=size).cost
+        cost = voxrt.render(rom, size=size, engine="rtl").cost
         cycles.append(cost.cycles / cost.rays)
         words.append(len(rom.octree.words))
     slope = np.polyfit(depths, cycles, 1)[0]
