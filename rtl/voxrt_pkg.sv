@@ -56,7 +56,7 @@ package voxrt_pkg;
 
   // T = (plane - origin) * weight needs the distance of any plane of the world from any position.
   function automatic int distance_bits(int max_depth, int position_bits);
-    return larger(position_bits, max_depth + FractionBits + 1) + 1;
+    return $clog2(64'd2 ** (position_bits - 1) + 64'd2 ** (max_depth + FractionBits) + 1) + 1;
   endfunction
 
   // The same where each reflection moves the origin by less than the world's side.

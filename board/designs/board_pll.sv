@@ -25,6 +25,10 @@ module board_pll #(
   if (ChipDelay >= SystemDivider) $error("board_pll: ChipDelay must be less than SystemDivider");
 
   // A phase of "divider - 1" is none: these clocks rise together.
+  //
+  // The attributes set charge pump, loop filter and amplifier. nextpnr takes 0 for each that is missing. These are the
+  // values of Trellis' ecppll, which has the same ones for all frequencies.
+  (* ICP_CURRENT = "12", LPF_RESISTOR = "8", MFG_ENABLE_FILTEROPAMP = "1", MFG_GMCREF_SEL = "2" *)
   EHXPLLL #(
     .CLKI_DIV     (InputDivider),
     .CLKFB_DIV    (FeedbackDivider),

@@ -30,7 +30,7 @@ CONFIGURATIONS = {name: configuration.parameters for name, configuration in read
 CORE = TOP
 SEED = 1  # All that is random starts from it: what fails, fails again.
 ARGUMENTS = ["-O3", "--assert", "--x-assign", "unique", "--x-initial", "unique", "--coverage-line", "-CFLAGS", "-O0"]
-SMALL = {"MaxDepth": 6, "PositionBits": 13, "BlockBits": 8}
+SMALL = {"MaxDepth": 6, "PositionBits": 11, "BlockBits": 8}  # the fewest bits that hold a position in the world
 
 
 class Build(NamedTuple):
@@ -52,7 +52,7 @@ BUILDS = {
     "mirrors": Build(CORE, SMALL | {"Lanes": 2, "Mirrors": 1}, ("bench_core",), repeats=True),
     "micro": Build(CORE, SMALL | {"Lanes": 1, "RayClocks": 4}, ("bench_core",), narrow=True, repeats=True),
     "micro-many": Build(CORE, SMALL | {"Lanes": 5, "RayClocks": 4}, ("bench_core",), narrow=True, repeats=True),
-    "lod": Build(CORE, SMALL | {"Lanes": 2, "Lod": 1}, ("bench_lod",)),
+    "lod": Build(CORE, SMALL | {"Lanes": 2, "Lod": 1}, ("bench_lod", "bench_positions")),
     "fifo": Build("voxrt_fifo", {}, ("bench_fifo",)),
     "stream_register": Build("voxrt_stream_register", {}, ("bench_stream_register",)),
     "stream_register-cut": Build("voxrt_stream_register", {"CutsReady": 1}, ("bench_stream_register",)),

