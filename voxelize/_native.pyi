@@ -61,6 +61,8 @@ def voxelize(
     objects_of: NDArray[np.int32],
     objects: int,
     fill: str,
+    rule: str,
+    thin: str,
     threads: int,
 ) -> Voxelized: ...
 
@@ -87,6 +89,8 @@ class BlockVoxelizer:
         objects_of: NDArray[np.int32],
         objects: int,
         fill: str,
+        rule: str,
+        thin: str,
         threads: int,
         wanted: NDArray[np.uint8],
     ) -> None: ...

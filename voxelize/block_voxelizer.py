@@ -54,7 +54,7 @@ class BlockVoxelizer:
 
     Parameters
     ----------
-    scene, grid, fill, geometry, pow2, threads
+    scene, grid, fill, rule, thin, geometry, pow2, threads
         As :func:`voxrt.voxelize.voxelize` takes them.
     objects
         Numbers of the objects to voxelize, for squares that no other object reaches; None for all.
@@ -83,13 +83,15 @@ class BlockVoxelizer:
         grid: Grid,
         *,
         fill: Literal["solid", "surface", "auto"] = "solid",
+        rule: Literal["touch", "centre"] = "touch",
+        thin: Literal["keep", "drop"] = "keep",
         geometry: Geometry = "auto",
         pow2: Pow2 = "box",
         threads: int = 0,
         objects: Iterable[int] | None = None,
     ) -> None:
         threads = arguments.whole("threads", threads, 0, MOST_THREADS)
-        self._parts = SceneParts(scene, grid, fill, geometry, pow2)
+        self._parts = SceneParts(scene, grid, fill=fill, rule=rule, thin=thin, geometry=geometry, pow2=pow2)
         self._native_arguments = self._parts.native_arguments()
         self._threads = threads
         self._objects = None if objects is None else tuple(objects)
@@ -116,9 +118,7 @@ class BlockVoxelizer:
         if self._objects is not None:
             wanted[list(self._objects)] = 1
         try:
-            return _native.BlockVoxelizer(
-                **self._native_arguments, fill=self._parts.fill, threads=self._threads, wanted=wanted
-            )
+            return _native.BlockVoxelizer(**self._native_arguments, threads=self._threads, wanted=wanted)
         except _native.OutOfRangeError as error:
             raise unreachable(self._parts.scene, int(error.args[0])) from None
 
@@ -127,7 +127,7 @@ class BlockVoxelizer:
         """A digest of all that decides the voxels, as 32 hexadecimal digits."""
         from hashlib import blake2b  # noqa: PLC0415 - slow to import, and most builds have no tiles
 
-        digest = blake2b(self._parts.fill.encode(), digest_size=16)
+        digest = blake2b(digest_size=16)
         for argument in self._native_arguments.values():
             _feed(digest, argument)
         return digest.hexdigest()
@@ -179,6 +179,8 @@ def voxelize_in_blocks(
     *,
     block_side: int,
     fill: Literal["solid", "surface", "auto"] = "solid",
+    rule: Literal["touch", "centre"] = "touch",
+    thin: Literal["keep", "drop"] = "keep",
     geometry: Geometry = "auto",
     pow2: Pow2 = "box",
     threads: int = 0,
@@ -187,7 +189,7 @@ def voxelize_in_blocks(
 
     Parameters
     ----------
-    scene, grid, fill, geometry, pow2, threads
+    scene, grid, fill, rule, thin, geometry, pow2, threads
         As :func:`voxelize` takes them.
     take
         Called with the voxels of each square that has geometry, in Morton order. Squares are disjoint, so the octrees
@@ -215,7 +217,9 @@ def voxelize_in_blocks(
     (4, 1082472)
     """
     block_side = arguments.whole("block_side", block_side, 64, 1 << 16)
-    voxelizer = BlockVoxelizer(scene, grid, fill=fill, geometry=geometry, pow2=pow2, threads=threads)
+    voxelizer = BlockVoxelizer(
+        scene, grid, fill=fill, rule=rule, thin=thin, geometry=geometry, pow2=pow2, threads=threads
+    )
     tallies = np.zeros((len(scene.objects), 4), np.int64)
     for block in voxelizer.blocks(block_side):
         voxels, found = voxelizer.voxelize(block)

@@ -36,15 +36,19 @@ _NO_MAP = MaterialMap(np.empty((0, 2), np.int32), np.empty((0, 3, 2), np.float32
 class SceneParts:
     """The parts of a scene as arrays for the native voxelizer, in authored order."""
 
-    def __init__(self, scene: Scene, grid: Grid, fill: str, geometry: Geometry, pow2: Pow2) -> None:
+    def __init__(
+        self, scene: Scene, grid: Grid, *, fill: str, rule: str, thin: str, geometry: Geometry, pow2: Pow2
+    ) -> None:
         arguments.instance("scene", scene, Scene)
         arguments.instance("grid", grid, Grid)
         arguments.choice("fill", fill, ("solid", "surface", "auto"))
+        arguments.choice("rule", rule, ("touch", "centre"))
+        arguments.choice("thin", thin, ("keep", "drop"))
         arguments.choice("geometry", geometry, GEOMETRIES)
         arguments.choice("pow2", pow2, POW2_CHOICES)
         self.scene = scene
         self.grid = grid
-        self.fill = fill
+        self._choices = {"fill": fill, "rule": rule, "thin": thin}
         self._geometry = geometry
         self._scale = UNITS_PER_VOXEL / grid.voxel_size
         self._meshes: list[_native.MeshArrays] = []
@@ -133,6 +137,7 @@ class SceneParts:
             "materials": rows[:, 2].astype(np.uint8),
             "objects_of": np.ascontiguousarray(rows[:, 3]),
             "objects": self._objects,
+            **self._choices,
         }
 
 

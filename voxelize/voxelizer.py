@@ -32,11 +32,13 @@ def voxelize(
     grid: Grid,
     *,
     fill: Literal["solid", "surface", "auto"] = "solid",
+    rule: Literal["touch", "centre"] = "touch",
+    thin: Literal["keep", "drop"] = "keep",
     geometry: Geometry = "auto",
     pow2: Pow2 = "box",
     threads: int = 0,
 ) -> Voxelization:
-    """Voxelize a scene: a voxel is solid when an object's closed solid overlaps its interior at all.
+    """Voxelize a scene.
 
     Parameters
     ----------
@@ -47,6 +49,13 @@ def voxelize(
         not fill open pieces: those with an opening larger than 15 % of their area that other pieces do not close.
         ``"surface"`` keeps the shells alone. ``"auto"`` is ``"solid"``, but leaves open also pieces whose openings
         exceed 5 % of their area together, as those of clothes do.
+    rule
+        ``"touch"``: a voxel is solid when an object's closed solid overlaps its interior at all. ``"centre"``: when its
+        centre lies in an object's closed solid. A surface that encloses nothing keeps each voxel that it touches.
+    thin
+        What becomes of parts too thin for the rule. ``"keep"``: they keep some of the voxels that they touch, so that
+        each of these is solid or has a solid one among its 26 neighbours, and what is connected stays so. ``"drop"``:
+        they keep no more than the rule gives.
     geometry
         ``"auto"``: an object's colliders where it has some, else its triangles; ``"render"``: always the triangles;
         ``"collider"``: always colliders, and the box of the mesh where the author gave none (with a warning).
@@ -79,10 +88,10 @@ def voxelize(
     >>> [(one.name, str(one.mode), one.voxels) for one in result.objects]
     [('block', 'exact', 64)]
     """
-    parts = SceneParts(scene, grid, fill, geometry, pow2)
+    parts = SceneParts(scene, grid, fill=fill, rule=rule, thin=thin, geometry=geometry, pow2=pow2)
     threads = arguments.whole("threads", threads, 0, MOST_THREADS)
     try:
-        result = _native.voxelize(**parts.native_arguments(), fill=fill, threads=threads)
+        result = _native.voxelize(**parts.native_arguments(), threads=threads)
     except _native.OutOfRangeError as error:
         raise unreachable(scene, int(error.args[0])) from None
     return Voxelization(voxels_of(grid.depth, result), *parts.described(result), result.seconds)

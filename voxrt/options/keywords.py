@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from os import PathLike
 
     from voxrt.octree.camera import Lighting
-    from voxrt.options.build_options import Fill, Geometry, Pow2, UpAxis
+    from voxrt.options.build_options import Fill, Geometry, Pow2, Rule, Thin, UpAxis
     from voxrt.options.shared import Dialect, Engine
     from voxrt.sim import Background, Dram
 
@@ -20,6 +20,8 @@ class BuildKeywords(TypedDict, total=False):
     depth: int | None
     voxel_size: float | None
     fill: Fill
+    rule: Rule
+    thin: Thin
     interior: int | str
     geometry: Geometry
     pow2: Pow2

@@ -60,6 +60,8 @@ def run_here(
             scene,
             plan.grid,
             fill=options.fill_per_object,
+            rule=options.rule,
+            thin=options.thin,
             geometry=options.geometry,
             pow2=options.pow2,
             threads=options.threads,

@@ -59,7 +59,14 @@ def scene_on_grid(scene: Scene, grid: Grid, options: BuildOptions) -> Scene:
 def block_voxelizer(scene: Scene, grid: Grid, options: BuildOptions) -> BlockVoxelizer:
     """Make a scene ready to be voxelized tile by tile."""
     return BlockVoxelizer(
-        scene, grid, fill=options.fill_per_object, geometry=options.geometry, pow2=options.pow2, threads=options.threads
+        scene,
+        grid,
+        fill=options.fill_per_object,
+        rule=options.rule,
+        thin=options.thin,
+        geometry=options.geometry,
+        pow2=options.pow2,
+        threads=options.threads,
     )
 
 

@@ -177,13 +177,15 @@ private:
 bool agree(const Scene& scene, int depth) {
     const Parts held(scene);
     const std::vector<PartView>& parts = held.get();
-    for (const Fill fill : {Fill::surface, Fill::solid, Fill::automatic}) {
-        const uint64_t alone = fingerprint(voxelize(depth, parts, parts.size(), fill, 1));
-        if (alone != fingerprint(voxelize(depth, parts, parts.size(), fill, 3))) {
-            std::printf("depth %d: the result depends on the number of threads\n", depth);
-            return false;
+    for (const Fill fill : {Fill::surface, Fill::solid, Fill::automatic})
+        for (const VoxelRule rule :
+             {VoxelRule{}, VoxelRule{Rule::centre, Thin::keep}, VoxelRule{Rule::centre, Thin::drop}}) {
+            const uint64_t alone = fingerprint(voxelize(depth, parts, parts.size(), fill, 1, rule));
+            if (alone != fingerprint(voxelize(depth, parts, parts.size(), fill, 3, rule))) {
+                std::printf("depth %d: the result depends on the number of threads\n", depth);
+                return false;
+            }
         }
-    }
     return true;
 }
 

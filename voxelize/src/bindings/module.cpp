@@ -97,6 +97,12 @@ Fill fill_of(const std::string& name) {
     return name == "surface" ? Fill::surface : name == "solid" ? Fill::solid : Fill::automatic;
 }
 
+VoxelRule rule_of(const std::string& rule, const std::string& thin) {
+    require(rule == "touch" || rule == "centre", "rule must be touch or centre");
+    require(thin == "keep" || thin == "drop", "thin must be keep or drop");
+    return {rule == "touch" ? Rule::touch : Rule::centre, thin == "keep" ? Thin::keep : Thin::drop};
+}
+
 /// The parts of a scene, with the arrays that they borrow.
 class SceneParts {
 public:
@@ -162,13 +168,13 @@ void require_threads(int threads) { require(threads >= 0 && threads <= 1024, "th
 
 nb::object voxelize_parts(int depth, std::vector<MeshArrays> meshes, InputOf<uint8_t> kinds, InputOf<int32_t> mesh_of,
                           InputOf<double> frames, InputOf<uint8_t> materials, InputOf<int32_t> objects_of, int objects,
-                          const std::string& fill, int threads) {
+                          const std::string& fill, const std::string& rule, const std::string& thin, int threads) {
     require_threads(threads);
     const SceneParts scene(depth, std::move(meshes), kinds, mesh_of, frames, materials, objects_of, objects);
     SparseVoxels out;
     {
         const LongCall call;
-        out = voxelize(depth, scene.parts, size_t(objects), fill_of(fill), threads);
+        out = voxelize(depth, scene.parts, size_t(objects), fill_of(fill), threads, rule_of(rule, thin));
     }
     return voxelized_of(out);
 }
@@ -178,15 +184,17 @@ class PythonBlockVoxelizer {
 public:
     PythonBlockVoxelizer(int depth, std::vector<MeshArrays> meshes, InputOf<uint8_t> kinds, InputOf<int32_t> mesh_of,
                          InputOf<double> frames, InputOf<uint8_t> materials, InputOf<int32_t> objects_of, int objects,
-                         const std::string& fill, int threads, InputOf<uint8_t> wanted)
+                         const std::string& fill, const std::string& rule, const std::string& thin, int threads,
+                         InputOf<uint8_t> wanted)
         : scene_(depth, std::move(meshes), kinds, mesh_of, frames, materials, objects_of, objects), side_(1 << depth),
           objects_(size_t(objects)) {
         require_threads(threads);
         require(wanted.ndim() == 1 && (wanted.size() == 0 || wanted.size() == objects_),
                 "wanted must have an element per object, or none");
         const LongCall call;
-        native_ = std::make_unique<BlockVoxelizer>(depth, scene_.parts, objects_, fill_of(fill), threads,
-                                                   std::span<const uint8_t>(wanted.data(), wanted.size()));
+        native_ =
+            std::make_unique<BlockVoxelizer>(depth, scene_.parts, objects_, fill_of(fill), threads, rule_of(rule, thin),
+                                             std::span<const uint8_t>(wanted.data(), wanted.size()));
     }
 
     void use_threads(int threads) {
@@ -292,7 +300,9 @@ materials
 objects_of
     Shape (P,): ascending, below `objects`.
 fill
-    "surface", "solid" or "auto": src/fill.h.
+    "surface", "solid" or "auto": src/scene/fill.h.
+rule, thin
+    "touch" or "centre"; "keep" or "drop": src/rules/rule.h.
 threads
     0 takes as many as the machine has. The result does not depend on it.
 
@@ -363,13 +373,14 @@ NB_MODULE(_native, m) {
         nullptr);
     m.def("voxelize", &voxelize_parts, nb::arg("depth"), nb::arg("meshes"), nb::arg("kinds"), nb::arg("mesh_of"),
           nb::arg("frames"), nb::arg("materials"), nb::arg("objects_of"), nb::arg("objects"), nb::arg("fill"),
-          nb::arg("threads"), kVoxelizeManual);
+          nb::arg("rule"), nb::arg("thin"), nb::arg("threads"), kVoxelizeManual);
     nb::class_<PythonBlockVoxelizer>(m, "BlockVoxelizer", kBlockVoxelizerManual)
         .def(nb::init<int, std::vector<MeshArrays>, InputOf<uint8_t>, InputOf<int32_t>, InputOf<double>,
-                      InputOf<uint8_t>, InputOf<int32_t>, int, const std::string&, int, InputOf<uint8_t>>(),
+                      InputOf<uint8_t>, InputOf<int32_t>, int, const std::string&, const std::string&,
+                      const std::string&, int, InputOf<uint8_t>>(),
              nb::arg("depth"), nb::arg("meshes"), nb::arg("kinds"), nb::arg("mesh_of"), nb::arg("frames"),
-             nb::arg("materials"), nb::arg("objects_of"), nb::arg("objects"), nb::arg("fill"), nb::arg("threads"),
-             nb::arg("wanted"))
+             nb::arg("materials"), nb::arg("objects_of"), nb::arg("objects"), nb::arg("fill"), nb::arg("rule"),
+             nb::arg("thin"), nb::arg("threads"), nb::arg("wanted"))
         .def("use_threads", &PythonBlockVoxelizer::use_threads, nb::arg("threads"), "Sets the number of threads.")
         .def("blocks", &PythonBlockVoxelizer::blocks, nb::arg("block_side"),
              "The corners (x, y) of the blocks with geometry, in Morton order: int32, shape (B, 2).")

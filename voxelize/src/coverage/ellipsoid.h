@@ -60,6 +60,16 @@ public:
         return span;
     }
 
+    /// The voxels of a column whose centres are within, among those that it overlaps.
+    ColumnSpan centres(int x, int y, int top) const {
+        ColumnSpan span = column(x, y, top);
+        while (span.lo <= span.hi && !holds_centre(x, y, span.lo))
+            ++span.lo;
+        while (span.lo <= span.hi && !holds_centre(x, y, span.hi))
+            --span.hi;
+        return span;
+    }
+
 private:
     static constexpr double kSlack = 1e-6; // voxels: more than float64 loses on a coordinate
 
@@ -128,6 +138,12 @@ private:
                 return false;
         }
         return true;
+    }
+
+    bool holds_centre(int x, int y, int z) const {
+        const int64_t d[3] = {from_centre(x, 0) + kUnit / 2, from_centre(y, 1) + kUnit / 2,
+                              from_centre(z, 2) + kUnit / 2};
+        return at(d) <= determinant_;
     }
 
     /// Whether the interior of a voxel meets that of the ellipsoid.

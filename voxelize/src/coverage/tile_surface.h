@@ -27,6 +27,7 @@ struct ShellBrick {
     Columns shell{}, enters{}, leaves{};
     uint32_t cells = kNone;       // row of materials where the shell has several
     uint32_t transparent = kNone; // row of voxels with fully transparent surface, where there is some
+    uint32_t held = kNone;        // row of voxels that the surface fills under every rule, where there are some
     uint8_t material = 0;         // the shell's only material, else 0
     bool crossed = false;         // enters or leaves may hold something
     bool has_repeated = false;    // crossings of this brick are in the list of repeated ones too
@@ -56,7 +57,7 @@ public:
         slots_.clear();
         bricks_.clear();
         cells_.clear();
-        transparent_.clear();
+        rows_.clear();
         repeated_.clear();
         x_ = x;
         y_ = y;
@@ -102,12 +103,16 @@ public:
     /// A voxel has fully transparent surface: that alone makes it no shell, and keeps it out of the inside.
     void cover_transparent(int x, int y, int z) {
         const Position at_column = locate(x, y);
-        ShellBrick& brick = at(at_column.column, z >> kBrickBits);
-        if (brick.transparent == kNone) {
-            brick.transparent = uint32_t(transparent_.size());
-            transparent_.emplace_back();
-        }
-        transparent_[brick.transparent][z & (kBrickSide - 1)] |= uint64_t{1} << column_bit(x - x_, y - y_);
+        row_of(at(at_column.column, z >> kBrickBits).transparent)[z & (kBrickSide - 1)] |=
+            uint64_t{1} << column_bit(x - x_, y - y_);
+    }
+
+    /// Receives from find_centres that the centres of voxels lo … hi of column (x, y) lie on the surface.
+    void hold(int x, int y, int lo, int hi) {
+        const Position at_column = locate(x, y);
+        for (int z = lo; z <= hi; ++z)
+            row_of(at(at_column.column, z >> kBrickBits).held)[z & (kBrickSide - 1)] |= uint64_t{1}
+                                                                                        << column_bit(x - x_, y - y_);
     }
 
     /// Receives from cover_triangle that the ray of column (x, y) crosses the surface at voxel z.
@@ -162,11 +167,22 @@ public:
         Slices found = shell;
         if (brick.transparent != kNone)
             for (int z = 0; z < kBrickSide; ++z)
-                found[z] |= transparent_[brick.transparent][z];
+                found[z] |= rows_[brick.transparent][z];
         return found;
     }
 
+    /// The voxels of a brick that hold() has received.
+    Slices held(const ShellBrick& brick) const { return brick.held == kNone ? Slices{} : rows_[brick.held]; }
+
 private:
+    Slices& row_of(uint32_t& row) {
+        if (row == kNone) {
+            row = uint32_t(rows_.size());
+            rows_.emplace_back();
+        }
+        return rows_[row];
+    }
+
     /// A column of voxels: its brick column, its row there, and where its byte begins.
     struct Position {
         int column, row, shift;
@@ -227,7 +243,7 @@ private:
     std::vector<ShellBrick> bricks_;
     std::vector<uint32_t> slots_;
     std::vector<Cells> cells_;
-    std::vector<Slices> transparent_;
+    std::vector<Slices> rows_; // of voxels with transparent surface, and of voxels held
     std::vector<RepeatedCrossing> repeated_;
 };
 

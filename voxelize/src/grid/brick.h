@@ -21,6 +21,17 @@ inline constexpr int kBrickVoxels = 512;
 inline bool is_full(const Slices& s) { return (s[0] & s[1] & s[2] & s[3] & s[4] & s[5] & s[6] & s[7]) == ~uint64_t{0}; }
 inline bool is_empty(const Slices& s) { return (s[0] | s[1] | s[2] | s[3] | s[4] | s[5] | s[6] | s[7]) == 0; }
 
+/// The only material of a brick's voxels, 0 of which are empty; 0 where there are several, or none.
+inline uint8_t only_material(const std::array<uint8_t, kBrickVoxels>& materials) {
+    uint8_t only = 0;
+    for (const uint8_t material : materials) {
+        if (material != 0 && only != 0 && material != only)
+            return 0;
+        only = material != 0 ? material : only;
+    }
+    return only;
+}
+
 /// Solid voxels. In plain arithmetic, since baseline x86-64 has no instruction for it.
 inline int count(const Slices& s) {
     constexpr uint64_t ones = 0x5555'5555'5555'5555, pairs = 0x3333'3333'3333'3333, nibbles = 0x0F0F'0F0F'0F0F'0F0F;

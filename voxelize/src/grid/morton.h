@@ -27,4 +27,12 @@ constexpr std::uint64_t morton(std::uint32_t x, std::uint32_t y, std::uint32_t z
     return spread_bits(x) | spread_bits(y) << 1 | spread_bits(z) << 2;
 }
 
+/// Moves bit 3k to bit k, for 16 bits.
+constexpr std::uint32_t gather_bits(std::uint64_t v) {
+    std::uint32_t result = 0;
+    for (int bit = 0; bit < 16; ++bit)
+        result |= static_cast<std::uint32_t>(v >> 3 * bit & 1) << bit;
+    return result;
+}
+
 } // namespace voxrt::voxelize

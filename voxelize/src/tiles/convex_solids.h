@@ -3,6 +3,7 @@
 #pragma once
 
 #include "../coverage/column_span.h"
+#include "rule_tile.h"
 #include "tile_voxels.h"
 
 #include <cmath>
@@ -26,6 +27,17 @@ struct AxisBox {
             span.inner_hi = span.hi - 1;
         }
         return span;
+    }
+
+    /// The voxels of a column whose centres are within.
+    ColumnSpan centres(int x, int y, int /*top*/) const {
+        auto holds = [this](int cell, int axis) {
+            const int64_t at = cell * kUnit + kUnit / 2;
+            return min[axis] <= at && at <= max[axis];
+        };
+        if (!holds(x, 0) || !holds(y, 1))
+            return {};
+        return {voxel_below(min[2] + kUnit / 2), voxel_floor(max[2] - kUnit / 2)};
     }
 };
 
@@ -66,6 +78,16 @@ struct Ball {
         return span;
     }
 
+    /// The voxels of a column whose centres are within.
+    ColumnSpan centres(int x, int y, int /*top*/) const {
+        const int64_t dx = std::abs(x * kUnit + kUnit / 2 - centre[0]),
+                      dy = std::abs(y * kUnit + kUnit / 2 - centre[1]);
+        if (dx > radius || dy > radius || dx * dx + dy * dy > radius * radius)
+            return {};
+        const int64_t extent = root(radius * radius - dx * dx - dy * dy);
+        return {voxel_below(centre[2] - extent + kUnit / 2), voxel_floor(centre[2] + extent - kUnit / 2)};
+    }
+
 private:
     /// floor(sqrt(v)), 0 <= v < 2^61.
     static int64_t root(int64_t v) {
@@ -78,23 +100,27 @@ private:
     }
 };
 
-/// Claims a convex solid's voxels in one tile; returns how many were free.
+/// Claims a convex solid's voxels in one tile; returns how many were free. `rule`: null for `touch`.
 ///
 /// Cost: the columns under the solid; bricks within it are claimed whole.
 template <class Solid>
-int64_t claim_convex(TileVoxels& tile, const Window& w, const Solid& solid, bool fill, uint8_t material) {
+int64_t claim_convex(TileVoxels& tile, RuleTile* rule, const Window& w, const Solid& solid, bool fill,
+                     uint8_t material) {
     int64_t claimed = 0;
     for (int column = 0; column < kTileColumns; ++column) {
         const int cx = w.x0 + column % kTileBricks * kBrickSide, cy = w.y0 + column / kTileBricks * kBrickSide;
         if (solid.first(0) > cx + 7 || solid.last(0) < cx || solid.first(1) > cy + 7 || solid.last(1) < cy)
             continue;
-        ColumnSpan spans[64];
+        ColumnSpan spans[64], centres[64];
         int lowest = INT_MAX, highest = INT_MIN, full_lo = 0, full_hi = w.top;
         for (int bit = 0; bit < 64; ++bit) {
             const int x = cx + column_x(bit), y = cy + column_y(bit);
             ColumnSpan& span = spans[bit];
-            if (x <= w.x1 && y <= w.y1)
+            if (x <= w.x1 && y <= w.y1) {
                 span = solid.column(x, y, w.top);
+                if (rule != nullptr)
+                    centres[bit] = solid.centres(x, y, w.top);
+            }
             span.lo = std::max(span.lo, 0);
             span.hi = std::min(span.hi, w.top);
             if (span.lo <= span.hi) {
@@ -109,12 +135,15 @@ int64_t claim_convex(TileVoxels& tile, const Window& w, const Solid& solid, bool
         const int full_from = (full_lo + kBrickSide - 1) >> kBrickBits, full_to = (full_hi + 1) >> kBrickBits;
         for (int k = lowest >> kBrickBits; k <= highest >> kBrickBits; ++k) {
             if (k >= full_from && k < full_to) {
-                if (fill)
+                if (fill) {
                     claimed += tile.claim_full(column, full_from, full_to, material);
+                    if (rule != nullptr)
+                        rule->add_full(column, full_from, full_to);
+                }
                 k = full_to - 1;
                 continue;
             }
-            Slices mask{};
+            Slices mask{}, surface{}, filled{}, was_free;
             for (int bit = 0; bit < 64; ++bit)
                 for (int z = 0; z < kBrickSide; ++z) {
                     const int at = k * kBrickSide + z;
@@ -122,9 +151,21 @@ int64_t claim_convex(TileVoxels& tile, const Window& w, const Solid& solid, bool
                     const bool within = at >= s.inner_lo && at <= s.inner_hi;
                     if (at >= s.lo && at <= s.hi && (fill || !within))
                         mask[z] |= uint64_t{1} << bit;
+                    if (at >= s.lo && at <= s.hi && !within)
+                        surface[z] |= uint64_t{1} << bit;
+                    if (rule != nullptr && at >= centres[bit].lo && at <= centres[bit].hi)
+                        filled[z] |= uint64_t{1} << bit;
                 }
-            if (!is_empty(mask))
-                claimed += tile.claim(column, k, mask, material, nullptr);
+            if (is_empty(mask))
+                continue;
+            claimed += tile.claim(column, k, mask, material, nullptr, rule != nullptr ? &was_free : nullptr);
+            if (rule == nullptr)
+                continue;
+            for (int z = 0; z < kBrickSide; ++z) {
+                filled[z] = fill ? filled[z] & mask[z] : mask[z];
+                was_free[z] &= surface[z];
+            }
+            rule->add(column, k, filled, surface, was_free);
         }
     }
     return claimed;

@@ -127,6 +127,22 @@ public:
         return within_;
     }
 
+    /// Those of the voxels with surface of a mixed brick whose sample point is inside.
+    Slices inside_at_surface(int column, int k, const Slices& surface, const std::vector<int>& numbers) {
+        const Slices box = box_of(column, k);
+        x_ = x0_ + column % kTileBricks * kBrickSide;
+        y_ = y0_ + column / kTileBricks * kBrickSide;
+        z_ = k * kBrickSide;
+        Slices found{};
+        for (int z = 0; z < kBrickSide; ++z)
+            for (uint64_t left = surface[z] & box[z]; left != 0; left &= left - 1) {
+                const int bit = std::countr_zero(left);
+                if (is_inside(sample(z, bit), numbers[size_t(z * 64 + bit)]))
+                    found[z] |= uint64_t{1} << bit;
+            }
+        return found;
+    }
+
 private:
     static constexpr double kSqrt3 = 1.7320508075688772;
     static constexpr double kTie = 0.5 + 1e-6;          // above 1/2 by more than rounding

@@ -5,11 +5,15 @@
 //
 // Where the surface has holes, the sweep gives the winding number of the capped surface, and GeneralizedInside
 // subtracts what the caps add.
+//
+// With a rule, crossings are marked where the winding number changes from one voxel's centre to the next, so that it
+// tells for voxels with surface, too, whether their centre is inside.
 #pragma once
 
 #include "../mesh/mesh_analysis.h"
 #include "column_winding.h"
 #include "generalized_inside.h"
+#include "rule_tile.h"
 #include "tile_voxels.h"
 
 #include <algorithm>
@@ -26,15 +30,23 @@ struct Claim {
 
 class SolidFill {
 public:
-    /// Claims the shell alone.
+    /// Where what a rule fills is noted; null for `touch`.
+    void use_rule(RuleTile* rule) { rule_ = rule; }
+
+    /// Claims the shell alone, which every rule fills.
     Claim claim_shell(TileVoxels& tile, TileSurface& object) {
         Claim result;
         for (uint32_t slot : object.slots()) {
             const int column = int(slot) / object.height(), k = int(slot) % object.height();
             const ShellBrick& brick = *object.find(column, k);
             const Cells* cells = brick.cells == kNone ? nullptr : &object.cells(brick.cells);
-            if (brick.has_shell())
-                result.voxels += tile.claim(column, k, slices_of(brick.shell), brick.material, cells);
+            if (!brick.has_shell())
+                continue;
+            const Slices shell = slices_of(brick.shell);
+            Slices claimed;
+            result.voxels += tile.claim(column, k, shell, brick.material, cells, rule_ ? &claimed : nullptr);
+            if (rule_)
+                rule_->add(column, k, shell, shell, claimed);
         }
         return result;
     }
@@ -126,11 +138,16 @@ private:
         result.inside += int64_t{to - from} * kBrickSide * std::popcount(inside);
         if (inside == ~uint64_t{0}) {
             result.voxels += tile.claim_full(column, from, to, interior);
+            if (rule_)
+                rule_->add_full(column, from, to);
         } else if (inside != 0) {
             Slices mask;
             mask.fill(inside);
-            for (int k = from; k < to; ++k)
+            for (int k = from; k < to; ++k) {
                 result.voxels += tile.claim(column, k, mask, interior, nullptr);
+                if (rule_)
+                    rule_->add(column, k, mask, {}, {});
+            }
         }
     }
 
@@ -188,10 +205,16 @@ private:
                 within = inside_.inside(column, k, surface, numbers_);
             else if (!is_empty(within))
                 intersect(within, inside_.box_of(column, k));
-            if (is_full(within) && is_empty(surface))
+            if (is_full(within) && is_empty(surface)) {
                 claim_run(tile, column, k, k + 1, ~uint64_t{0}, interior, result);
-            else
-                claim_brick(tile, object, column, k, brick, within, interior, result);
+                continue;
+            }
+            if (rule_ && mixed) {
+                const Slices holds = inside_.inside_at_surface(column, k, surface, numbers_);
+                for (int z = 0; z < kBrickSide; ++z)
+                    within[z] |= holds[z];
+            }
+            claim_brick(tile, object, column, k, brick, within, interior, result);
         }
     }
 
@@ -212,11 +235,27 @@ private:
         result.inside += count(hidden);
         if (is_empty(mask))
             return;
-        const bool has_shell = brick.has_shell();
-        if (!has_shell || (brick.cells == kNone && (brick.material == interior || is_empty(hidden)))) {
-            result.voxels += tile.claim(column, k, mask, has_shell ? brick.material : interior, nullptr);
+        Slices claimed;
+        result.voxels += claim_cells(tile, object, column, k, brick, mask, hidden, interior, claimed);
+        if (!rule_)
             return;
+        const Slices held = object.held(brick);
+        Slices filled;
+        for (int z = 0; z < kBrickSide; ++z) {
+            filled[z] = (within[z] | held[z]) & mask[z];
+            claimed[z] &= shell[z];
         }
+        rule_->add(column, k, filled, shell, claimed);
+    }
+
+    /// Claims the shell and what is hidden behind it: `mask`. `claimed` becomes what was free, where a rule wants it.
+    int64_t claim_cells(TileVoxels& tile, const TileSurface& object, int column, int k, const ShellBrick& brick,
+                        const Slices& mask, const Slices& hidden, uint8_t interior, Slices& claimed) const {
+        Slices* was_free = rule_ ? &claimed : nullptr;
+        const bool has_shell = brick.has_shell();
+        if (!has_shell || (brick.cells == kNone && (brick.material == interior || is_empty(hidden))))
+            return tile.claim(column, k, mask, has_shell ? brick.material : interior, nullptr, was_free);
+        const Slices shell = slices_of(brick.shell);
         Cells cells;
         for (int z = 0; z < kBrickSide; ++z)
             for (int bit = 0; bit < 64; ++bit) {
@@ -224,7 +263,7 @@ private:
                 const uint8_t own = brick.cells == kNone ? brick.material : object.cells(brick.cells)[i];
                 cells[i] = shell[z] >> bit & 1 ? own : hidden[z] >> bit & 1 ? interior : 0;
             }
-        result.voxels += tile.claim(column, k, mask, 0, &cells);
+        return tile.claim(column, k, mask, 0, &cells, was_free);
     }
 
     void add_repeated(ColumnWinding& winding, uint32_t brick, int z) {
@@ -235,6 +274,7 @@ private:
                 winding.add(it->enters ? uint64_t{1} << it->bit : 0, it->enters ? 0 : uint64_t{1} << it->bit);
     }
 
+    RuleTile* rule_ = nullptr;
     std::vector<RepeatedCrossing> repeated_;
     GeneralizedInside inside_;
     std::vector<int> numbers_; // winding numbers of the capped surface in a brick, by slice and bit

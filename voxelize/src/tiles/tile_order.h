@@ -4,6 +4,7 @@
 // tiles.
 #pragma once
 
+#include "rule_tile.h"
 #include "tile_voxels.h"
 
 namespace voxrt::voxelize {
@@ -28,6 +29,8 @@ struct TileResult {
     std::vector<uint64_t> octant_codes;
     std::vector<uint8_t> octant_levels, octant_materials;
     std::vector<CubeRun> runs;
+    std::vector<RuleBrick> rule_bricks; // these two for rules other than `touch`
+    std::vector<OwnedSurface> owned;
 };
 
 class TileSorter {
@@ -129,13 +132,7 @@ private:
             return;
         }
         const Cells& cells = tile.cells(brick.cells);
-        uint8_t only = 0;
-        bool mixed = false;
-        for (uint8_t material : cells) {
-            mixed = mixed || (only != 0 && material != 0 && material != only);
-            only = material != 0 ? material : only;
-        }
-        if (!mixed) {
+        if (const uint8_t only = only_material(cells); only != 0) {
             out.brick_materials.push_back(only);
             out.brick_rows.push_back(-1);
             return;

@@ -61,9 +61,16 @@ public:
     }
 
     /// Claims the voxels of `mask` for `material`, or for `cells` (by voxel) where given; returns how many were free.
-    int64_t claim(int column, int k, const Slices& mask, uint8_t material, const Cells* cells) {
+    /// `was_free`, where given, becomes those.
+    int64_t claim(int column, int k, const Slices& mask, uint8_t material, const Cells* cells,
+                  Slices* was_free = nullptr) {
         used_ |= uint64_t{1} << column;
         uint32_t& slot = table_[size_t(column) * height_ + k];
+        if (was_free != nullptr) {
+            const Slices taken = mask_of(slot);
+            for (int z = 0; z < kBrickSide; ++z)
+                (*was_free)[z] = mask[z] & ~taken[z];
+        }
         if (slot != 0)
             return slot < kFirstBrick ? 0 : claim_in(slot, mask, material, cells);
         if (cells == nullptr && is_full(mask)) {
@@ -87,6 +94,15 @@ public:
     const uint32_t* slots(int column, int k) const { return &table_[size_t(column) * height_ + k]; }
     const VoxelBrick& brick(uint32_t slot) const { return bricks_[slot - kFirstBrick]; }
     size_t bricks() const { return bricks_.size(); }
+
+    /// The solid voxels of a slot.
+    Slices mask_of(uint32_t slot) const {
+        if (slot >= kFirstBrick)
+            return brick(slot).mask;
+        Slices all;
+        all.fill(slot == 0 ? 0 : ~uint64_t{0});
+        return all;
+    }
 
     static constexpr uint32_t kFirstBrick = 256;
 

@@ -1,6 +1,7 @@
 // Voxelizes one tile: the surfaces of all parts that reach it, what they enclose, and what is solid by itself.
 #pragma once
 
+#include "../coverage/centre_crossings.h"
 #include "../coverage/ellipsoid.h"
 #include "../coverage/material_raster.h"
 #include "convex_solids.h"
@@ -17,11 +18,14 @@ inline constexpr double kNotedOpening = 0.01;
 
 /// What a thread keeps from tile to tile.
 struct Scratch {
-    explicit Scratch(int side, size_t objects, size_t parts)
-        : surface(side), tile(side), object_voxels(objects, 0), shell_of_open(objects, 0), inside_of_open(objects, 0),
-          overlaps_itself(parts, 0) {}
+    Scratch(int side, size_t objects, size_t parts, Rule rule)
+        : surface(side), tile(side), rule(rule == Rule::touch ? nullptr : std::make_unique<RuleTile>(side)),
+          object_voxels(objects, 0), shell_of_open(objects, 0), inside_of_open(objects, 0), overlaps_itself(parts, 0) {
+        fill.use_rule(this->rule.get());
+    }
     TileSurface surface;
     TileVoxels tile;
+    std::unique_ptr<RuleTile> rule; // null for `touch`
     SolidFill fill;
     TileSorter sorter;
     std::vector<Vertex> vertices;
@@ -29,6 +33,18 @@ struct Scratch {
     std::vector<int64_t> shell_of_open, inside_of_open; // by object: of parts with openings worth a note
     std::vector<uint8_t> overlaps_itself;               // by part: ObjectFindings
     StageSeconds seconds;
+};
+
+/// Receiver of cover_triangle that holds what it covers: every rule fills surfaces without inside.
+class HeldSurface {
+public:
+    explicit HeldSurface(TileSurface& surface) : surface_(surface) {}
+    int side() const { return surface_.side(); }
+    void cover(int x, int y, int lo, int hi) { surface_.hold(x, y, lo, hi); }
+    void cross(int, int, int, bool) {}
+
+private:
+    TileSurface& surface_;
 };
 
 class TileWorker {
@@ -42,12 +58,16 @@ public:
         const Window window{tile_x * kTileSide, std::min(tile_x * kTileSide + kTileSide, side_) - 1, tile_y * kTileSide,
                             std::min(tile_y * kTileSide + kTileSide, side_) - 1, side_ - 1};
         s.tile.clear();
+        if (s.rule)
+            s.rule->clear();
         for (uint32_t i = bins_.starts[index], end = bins_.starts[index + 1]; i < end;) {
             const uint32_t part = bins_.triangles[i].part;
             uint32_t next = i + 1;
             while (next < end && bins_.triangles[next].part == part)
                 ++next;
             const BinnedTriangle* triangles = bins_.triangles.data() + i;
+            if (s.rule)
+                s.rule->begin(parts_[part].object);
             if (parts_[part].kind == PartKind::mesh) {
                 add_mesh(part, {triangles, next - i}, window, s);
             } else {
@@ -60,6 +80,8 @@ public:
         Stopwatch lap;
         if (!s.tile.empty())
             s.sorter.sort(s.tile, slot, tile_x, tile_y, out);
+        if (s.rule)
+            s.rule->list(s.tile, tile_x, tile_y, out.rule_bricks, out.owned);
         s.seconds.order += lap();
     }
 
@@ -69,14 +91,14 @@ private:
         auto whole = [&](int i) { return int64_t(snap(f[i], part.object)); };
         int64_t claimed = 0;
         if (part.kind == PartKind::box)
-            claimed =
-                claim_convex(s.tile, window, AxisBox{{whole(0), whole(1), whole(2)}, {whole(3), whole(4), whole(5)}},
-                             fills(fill_), part.material);
+            claimed = claim_convex(s.tile, s.rule.get(), window,
+                                   AxisBox{{whole(0), whole(1), whole(2)}, {whole(3), whole(4), whole(5)}},
+                                   fills(fill_), part.material);
         else if (part.kind == PartKind::ball)
-            claimed = claim_convex(s.tile, window, Ball{{whole(0), whole(1), whole(2)}, whole(3)}, fills(fill_),
-                                   part.material);
+            claimed = claim_convex(s.tile, s.rule.get(), window, Ball{{whole(0), whole(1), whole(2)}, whole(3)},
+                                   fills(fill_), part.material);
         else
-            claimed = claim_convex(s.tile, window, Ellipsoid(f), fills(fill_), part.material);
+            claimed = claim_convex(s.tile, s.rule.get(), window, Ellipsoid(f), fills(fill_), part.material);
         s.object_voxels[part.object] += claimed;
     }
 
@@ -99,9 +121,9 @@ private:
         const CappedSurface* capped = own ? &*own : analysis.capped.get();
         s.seconds.holes += lap();
         if (fills(fill_))
-            cover<true>(part, analysis, capped, *vertices, triangles, window, s.surface);
+            cover<true>(part, analysis, capped, *vertices, triangles, window, s.rule != nullptr, s.surface);
         else
-            cover<false>(part, analysis, capped, *vertices, triangles, window, s.surface);
+            cover<false>(part, analysis, capped, *vertices, triangles, window, false, s.surface);
         s.seconds.coverage += lap();
         const bool has_holes = capped != nullptr && !capped->cap_winding.empty();
         if (s.surface.empty() && !has_holes)
@@ -131,7 +153,7 @@ private:
     template <bool Cross>
     void cover(const PartView& part, const MeshAnalysis& analysis, const CappedSurface* capped,
                const std::vector<Vertex>& vertices, std::span<const BinnedTriangle> triangles, const Window& window,
-               TileSurface& surface) const {
+               bool has_rule, TileSurface& surface) const {
         const MeshView& mesh = *part.mesh;
         surface.set_material(part.material);
         const Orientation* orientation = analysis.orientation.get();
@@ -140,24 +162,39 @@ private:
             const auto& [a, b, c] = capped->caps[cap];
             cross_triangle(a, b, c, window, surface);
         };
+        // The winding number of a capped surface is taken at the sample points, beside the centres: caps may pass
+        // these.
+        const bool has_caps = capped != nullptr && !capped->cap_winding.empty();
         auto add = [&](size_t t) {
             if (analysis.is_covered(mesh, t))
                 return;
             const int32_t* corner = mesh.triangles.data() + 3 * t;
             const bool reversed = orientation != nullptr && orientation->is_reversed(t);
-            const bool counts = !(capped != nullptr && capped->is_shell_only(t)) &&
-                                !(orientation != nullptr && orientation->is_uncounted(t));
+            const bool is_shell_only = capped != nullptr && capped->is_shell_only(t);
+            const bool counts = !is_shell_only && !(orientation != nullptr && orientation->is_uncounted(t));
             const Vertex &a = vertices[corner[0]], &b = vertices[corner[reversed ? 2 : 1]],
                          &c = vertices[corner[reversed ? 1 : 2]];
             count_work(10 + columns_under(a, b, c));
             if (part.material == 0)
                 surface.set_material(mesh.materials[t]);
             auto cover_with = [&](auto& receiver) {
-                if (counts)
+                if (counts && !(Cross && has_rule))
                     cover_triangle<Cross>(a, b, c, window, analysis.inverted, receiver);
                 else
                     cover_triangle<false>(a, b, c, window, analysis.inverted, receiver);
             };
+            if (Cross && has_rule) {
+                if (is_shell_only) {
+                    HeldSurface held(surface);
+                    cover_triangle<false>(a, b, c, window, analysis.inverted, held);
+                } else if (counts && !has_caps) {
+                    find_centres<true>(a, b, c, window, surface);
+                } else {
+                    find_centres<false>(a, b, c, window, surface);
+                    if (counts)
+                        cross_triangle(a, b, c, window, surface);
+                }
+            }
             if (part.material != 0 || !mesh.rasters.has_raster(t)) {
                 cover_with(surface);
             } else {

@@ -1,5 +1,7 @@
 #include "voxelizer.h"
 
+#include "../rules/rule_voxels.h"
+#include "../rules/thin_parts.h"
 #include "tile_worker.h"
 
 #include <optional>
@@ -153,12 +155,13 @@ void report_objects(const std::vector<PartView>& parts, Fill fill, const Triangl
 
 } // namespace
 
-SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads) {
+SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads,
+                      VoxelRule rule) {
     SparseVoxels all;
     all.depth = unsigned(depth);
     all.clear();
-    SparseVoxels report = voxelize_in_blocks(depth, parts, objects, fill, threads, 1 << depth,
-                                             [&](SparseVoxels&& block) { all = std::move(block); });
+    SparseVoxels report = voxelize_in_blocks(
+        depth, parts, objects, fill, threads, 1 << depth, [&](SparseVoxels&& block) { all = std::move(block); }, rule);
     all.object_voxels = std::move(report.object_voxels);
     all.object_modes = std::move(report.object_modes);
     all.object_notes = std::move(report.object_notes);
@@ -167,8 +170,8 @@ SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t obje
 }
 
 SparseVoxels voxelize_in_blocks(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads,
-                                int block_side, const TakeBlock& take) {
-    BlockVoxelizer voxelizer(depth, parts, objects, fill, threads);
+                                int block_side, const TakeBlock& take, VoxelRule rule) {
+    BlockVoxelizer voxelizer(depth, parts, objects, fill, threads, rule);
     const std::vector<ColumnBlock> blocks = voxelizer.blocks(block_side);
     std::vector<ObjectTally> tallies(objects);
     SparseVoxels report;
@@ -181,9 +184,9 @@ SparseVoxels voxelize_in_blocks(int depth, const std::vector<PartView>& parts, s
 }
 
 struct BlockVoxelizer::State {
-    State(int depth, std::vector<PartView> scene_parts, size_t object_count, Fill how, int threads)
+    State(int depth, std::vector<PartView> scene_parts, size_t object_count, Fill how, VoxelRule which, int threads)
         : depth(unsigned(depth)), side(1 << depth), parts(std::move(scene_parts)), objects(object_count), fill(how),
-          workers(threads), scratch(size_t(workers.threads())) {}
+          rule(which), workers(threads), scratch(size_t(workers.threads())) {}
 
     TileRange tiles_of(const ColumnBlock& block) const {
         const int end = bins.tiles_per_side;
@@ -202,14 +205,13 @@ struct BlockVoxelizer::State {
         return found;
     }
 
-    std::vector<TileResult> results(const ColumnBlock& block, std::vector<ObjectTally>& tallies) {
+    std::vector<TileResult> results(const std::vector<uint32_t>& tiles, std::vector<ObjectTally>& tallies) {
         lap();
-        const std::vector<uint32_t> tiles = occupied(block);
         std::vector<TileResult> found(tiles.size());
         const TileWorker worker(parts, bins, side, fill);
         workers.run(tiles.size(), [&](size_t job, int thread) {
             if (!scratch[size_t(thread)])
-                scratch[size_t(thread)] = std::make_unique<Scratch>(side, objects, parts.size());
+                scratch[size_t(thread)] = std::make_unique<Scratch>(side, objects, parts.size(), rule.rule);
             worker.work(tiles[job], uint32_t(job), *scratch[size_t(thread)], found[job]);
         });
         StageSeconds sum;
@@ -233,11 +235,68 @@ struct BlockVoxelizer::State {
         return out;
     }
 
+    /// The tiles beside a block that a rule looks at.
+    std::vector<uint32_t> occupied_around(const ColumnBlock& block) const {
+        static_assert(kThinReach < kTileSide);
+        const TileRange range = tiles_of(block);
+        std::vector<uint32_t> found;
+        const int end = bins.tiles_per_side;
+        for (int y = std::max(range.y0 - 1, 0); y <= std::min(range.y1 + 1, end - 1); ++y)
+            for (int x = std::max(range.x0 - 1, 0); x <= std::min(range.x1 + 1, end - 1); ++x) {
+                const bool inside = x >= range.x0 && x <= range.x1 && y >= range.y0 && y <= range.y1;
+                if (const auto t = uint32_t(y * end + x); !inside && bins.starts[t] < bins.starts[t + 1])
+                    found.push_back(t);
+            }
+        return found;
+    }
+
+    /// The voxels of a block by the rule.
+    SparseVoxels ruled(const ColumnBlock& block, std::vector<ObjectTally>& tallies) {
+        std::vector<TileResult> found = results(occupied(block), tallies);
+        if (rule.rule == Rule::touch)
+            return gathered(std::move(found));
+        RuleFindings findings;
+        auto take_findings = [&](std::vector<TileResult>& from) {
+            for (TileResult& tile : from) {
+                findings.bricks.insert(findings.bricks.end(), tile.rule_bricks.begin(), tile.rule_bricks.end());
+                findings.owned.insert(findings.owned.end(), tile.owned.begin(), tile.owned.end());
+                tile.rule_bricks = {};
+                tile.owned = {};
+            }
+        };
+        take_findings(found);
+        SparseVoxels around;
+        const std::vector<uint32_t> beside = occupied_around(block);
+        if (!beside.empty()) {
+            std::vector<ObjectTally> of_others(objects);
+            std::vector<TileResult> others = results(beside, of_others);
+            take_findings(others);
+            for (uint32_t i = 0; i < found.size(); ++i)
+                others.push_back(found[i]);
+            for (uint32_t i = 0; i < others.size(); ++i)
+                for (CubeRun& run : others[i].runs)
+                    run.tile = i;
+            around = gathered(std::move(others));
+        }
+        SparseVoxels voxels = gathered(std::move(found));
+        const TileRange range = tiles_of(block);
+        const auto brick = [](int tile) { return uint32_t(tile) * kTileBricks; };
+        std::vector<int64_t> lost(objects, 0);
+        apply_rule(voxels, beside.empty() ? voxels : around, std::move(findings),
+                   {brick(range.x0), brick(range.x1 + 1), brick(range.y0), brick(range.y1 + 1)}, rule.thin, lost,
+                   workers);
+        for (size_t i = 0; i < objects; ++i)
+            tallies[i].voxels -= lost[i];
+        seconds.fill += lap();
+        return voxels;
+    }
+
     unsigned depth;
     int side;
     std::vector<PartView> parts;
     size_t objects;
     Fill fill;
+    VoxelRule rule;
     Workers workers;
     TriangleBins bins;
     std::vector<std::unique_ptr<Scratch>> scratch;
@@ -246,8 +305,8 @@ struct BlockVoxelizer::State {
 };
 
 BlockVoxelizer::BlockVoxelizer(int depth, std::vector<PartView> parts, size_t objects, Fill fill, int threads,
-                               std::span<const uint8_t> wanted)
-    : state_(std::make_unique<State>(depth, std::move(parts), objects, fill, threads)) {
+                               VoxelRule rule, std::span<const uint8_t> wanted)
+    : state_(std::make_unique<State>(depth, std::move(parts), objects, fill, rule, threads)) {
     State& s = *state_;
     s.bins = bin_triangles(s.parts, wanted, s.side, fill, s.workers);
     s.seconds.bin = s.bins.seconds;
@@ -282,19 +341,29 @@ std::vector<ColumnBlock> BlockVoxelizer::blocks(int block_side) const {
 std::vector<uint8_t> BlockVoxelizer::objects_of(const ColumnBlock& block) const {
     const TriangleBins& bins = state_->bins;
     std::vector<uint8_t> found(state_->objects, 0);
-    for (const uint32_t tile : state_->occupied(block))
+    std::vector<uint32_t> tiles = state_->occupied(block);
+    if (state_->rule.rule != Rule::touch) {
+        const std::vector<uint32_t> beside = state_->occupied_around(block);
+        tiles.insert(tiles.end(), beside.begin(), beside.end());
+    }
+    for (const uint32_t tile : tiles)
         for (uint32_t i = bins.starts[tile]; i < bins.starts[tile + 1]; ++i)
             found[state_->parts[bins.triangles[i].part].object] = 1;
     return found;
 }
 
 SparseVoxels BlockVoxelizer::block(const ColumnBlock& block, std::vector<ObjectTally>& tallies) {
-    return state_->gathered(state_->results(block, tallies));
+    return state_->ruled(block, tallies);
 }
 
 SparseVoxels BlockVoxelizer::last_block(const ColumnBlock& block, std::vector<ObjectTally>& tallies,
                                         SparseVoxels& report) {
-    std::vector<TileResult> results = state_->results(block, tallies);
+    if (state_->rule.rule != Rule::touch) {
+        SparseVoxels last = state_->ruled(block, tallies);
+        report = this->report(tallies);
+        return last;
+    }
+    std::vector<TileResult> results = state_->results(state_->occupied(block), tallies);
     report = this->report(tallies);
     state_->scratch.clear(); // the peak of memory use is in what follows
     state_->bins = {};

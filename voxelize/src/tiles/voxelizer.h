@@ -1,6 +1,7 @@
 // The voxelizer: parts in grid space to sparse voxels. This is the entry of the library voxrt::voxelize.
 //
 // A voxel is solid where the closed solid of an object overlaps the voxel's interior at all; touching is not overlap.
+// Another rule (rule.h) takes some of these voxels away again (rule_voxels.h).
 // Where objects compete, the first in authored order keeps the voxel. Coverage of triangles is exact
 // (triangle_coverage.h). Inside is where the winding number is not zero, or, for surfaces with holes, where the
 // generalized winding number exceeds 1/2 (generalized_inside.h).
@@ -22,12 +23,14 @@
 //   holes     the same for surfaces with holes                                   surface bricks, voxels near holes
 //   order     bricks put in Morton order                                         surface bricks; L2 cache
 // and at last
+//   rule      voxels that a rule does not fill are taken away, thin parts kept     surface bricks; L2 cache
 //   gather    the bricks of all tiles laid out one after another                 surface bricks; memory bandwidth
 //
 // A part that touches few tiles is not binned by triangle: its tiles take it whole and snap its vertices themselves.
 #pragma once
 
 #include "../grid/sparse_voxels.h"
+#include "../rules/rule.h"
 #include "../scene/fill.h"
 #include "../scene/object_mode.h"
 #include "../scene/parts.h"
@@ -41,11 +44,12 @@ namespace voxrt::voxelize {
 
 /// Voxelizes `parts`, ascending by object, on a grid of 2^depth voxels per side.
 ///
-/// `depth` is 1 … 16, `objects` is above the object of every part. `fill`: fill.h. `threads`: 0 takes as many as the
-/// machine has; the result does not depend on it. The arguments are not checked. Throws OutOfRange (parts.h),
-/// std::length_error where the tiles would list 2^32 triangles or more, and what the caller's interrupt check throws
-/// (interrupt.h).
-SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads);
+/// `depth` is 1 … 16, `objects` is above the object of every part. `fill`: fill.h. `rule`: rule.h. `threads`: 0 takes
+/// as many as the machine has; the result does not depend on it. The arguments are not checked. Throws OutOfRange
+/// (parts.h), std::length_error where the tiles would list 2^32 triangles or more, and what the caller's interrupt
+/// check throws (interrupt.h).
+SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads,
+                      VoxelRule rule = {});
 
 /// Receives the voxels of a block, all that no other block has; its lists of objects are empty.
 using TakeBlock = std::function<void(SparseVoxels&&)>;
@@ -54,7 +58,7 @@ using TakeBlock = std::function<void(SparseVoxels&&)>;
 /// order. Only one block's voxels are in memory at a time. `take` is called for blocks with geometry; octree::Assembly
 /// joins their octrees. Returns what became of the objects, without voxels.
 SparseVoxels voxelize_in_blocks(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads,
-                                int block_side, const TakeBlock& take);
+                                int block_side, const TakeBlock& take, VoxelRule rule = {});
 
 /// A square of columns over the grid's whole height: its lowest column, and columns per side.
 struct ColumnBlock {
@@ -81,7 +85,7 @@ struct ObjectTally {
 class BlockVoxelizer {
 public:
     /// `wanted`: by object, 0 where it is left out, for blocks that it does not reach; empty for all objects.
-    BlockVoxelizer(int depth, std::vector<PartView> parts, size_t objects, Fill fill, int threads,
+    BlockVoxelizer(int depth, std::vector<PartView> parts, size_t objects, Fill fill, int threads, VoxelRule rule = {},
                    std::span<const uint8_t> wanted = {});
     ~BlockVoxelizer();
 

@@ -1,0 +1,204 @@
+"""Rules against brute force; thin parts; the same bytes in blocks, with any threads and by the command."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from oracles.meshes import box_mesh, icosphere, joined, one_object, scene_of
+from oracles.rules import centres_inside, dilated, pieces, ruled
+from oracles.voxels import dense, snap
+
+import voxrt
+from voxrt import octree
+from voxrt.voxelize import BoxCollider, Grid, Mesh, SceneObject, SphereCollider, load, voxelize, voxelize_in_blocks
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+
+
+def turned(mesh, rng):
+    """A mesh turned about its middle, and stretched along one of its axes: thin, or long."""
+    turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+    if np.linalg.det(turn) < 0:
+        turn[:, 0] *= -1
+    middle = mesh.positions.mean(0)
+    stretch = [1, 1, rng.choice([1, 0.1, 4])]
+    return Mesh((mesh.positions - middle) * stretch @ turn.T + middle, mesh.triangles, mesh.materials)
+
+
+def some_mesh(rng, side, material):
+    kind = rng.integers(3)
+    if kind == 0:
+        mesh = icosphere(int(rng.integers(2)), tuple(rng.uniform(0, side, 3)), rng.uniform(0.3, side / 2), material)
+    else:  # corners at half voxels: centres lie on its faces
+        low = rng.integers(0, 2 * side - 1, 3) / 2
+        mesh = box_mesh(low, low + rng.choice([0.25, 0.5, 1, 2, 3, side / 3], 3), material)
+        mesh = turned(mesh, rng) if kind == 2 else mesh
+    other = rng.random(len(mesh.triangles)) < 0.3
+    return Mesh(mesh.positions, mesh.triangles, np.where(other, 10 * material, material).astype(np.uint8))
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_the_rule_is_that_of_brute_force(seed):
+    rng = np.random.default_rng(seed)
+    depth = int(rng.integers(2, 6))
+    grid = Grid(depth, (0.0, 0.0, 0.0), 1.0)
+    scene = scene_of(*(some_mesh(rng, grid.size, number + 1) for number in range(rng.integers(1, 4))))
+    meshes = [
+        (snap(one.mesh.positions, one.transform, grid.origin, 1.0), one.mesh.triangles, one.mesh.materials)
+        for one in scene.objects
+    ]
+    for thin in ("keep", "drop"):
+        made = voxelize(scene, grid, rule="centre", thin=thin, threads=1)
+        voxels = dense(made.voxels)
+        np.testing.assert_array_equal(voxels, ruled(meshes, grid.size, thin=thin))
+        assert sum(one.voxels for one in made.objects) == np.count_nonzero(voxels)
+
+
+@pytest.mark.parametrize("stretched", [False, True])
+def test_solids_without_triangles(stretched):
+    """Box, ball and ellipsoid: centres in the closed solid, by arithmetic on halves and quarters."""
+    grid = Grid(5, (0.0, 0.0, 0.0), 1.0)
+    at = np.stack(np.meshgrid(*[np.arange(32) + 0.5] * 3, indexing="ij"), axis=-1)
+    middle = np.array((16.0, 15.5, 14.25))
+    box = SceneObject(
+        "box",
+        box_mesh((0, 0, 0), (1, 1, 1)),
+        np.eye(4),
+        (BoxCollider((2.5, 3.5, 4.25), (9.5, 30.25, 4.75), pow2=False),),
+        2,
+    )
+    voxels = dense(voxelize(scene_of(box), grid, rule="centre").voxels) != 0
+    np.testing.assert_array_equal(voxels, ((at >= (2.5, 3.5, 4.25)) & (at <= (9.5, 30.25, 4.75))).all(-1))
+    shape = np.diag([1.0, 0.5, 1.25, 1.0] if stretched else [1.0, 1.0, 1.0, 1.0])
+    shape[:3, 3] = middle
+    ball = SceneObject("ball", box_mesh((0, 0, 0), (1, 1, 1)), shape, (SphereCollider((0.0, 0.0, 0.0), 9.5),), 3)
+    voxels = dense(voxelize(scene_of(ball), grid, rule="centre").voxels) != 0
+    np.testing.assert_array_equal(voxels, (((at - middle) / np.diag(shape)[:3]) ** 2).sum(-1) <= 9.5**2)
+
+
+def wires(count, side, thickness, seed):
+    rng = np.random.default_rng(seed)
+    made = []
+    for _ in range(count):
+        start, end = rng.uniform(0, side, (2, 3))
+        along = end - start
+        across = np.cross(along, (0.3, 0.5, 0.7))
+        across *= thickness / np.linalg.norm(across)
+        third = np.cross(along, across)
+        third *= thickness / np.linalg.norm(third)
+        mesh = box_mesh((-0.5, -0.5, 0), (0.5, 0.5, 1))
+        made.append(Mesh(start + mesh.positions @ np.array([across, third, along]), mesh.triangles, mesh.materials))
+    return joined(*made)
+
+
+@pytest.mark.parametrize("thickness", [0.05, 0.4, 0.8, 1.3])
+def test_thin_parts_stay_and_stay_connected(thickness):
+    scene, grid = one_object(wires(6, 64, thickness, 3)), Grid(6, (0.0, 0.0, 0.0), 1.0)
+    touched = dense(voxelize(scene, grid).voxels) != 0
+    kept = dense(voxelize(scene, grid, rule="centre").voxels) != 0
+    bare = dense(voxelize(scene, grid, rule="centre", thin="drop").voxels) != 0
+    around = [d for d in np.ndindex(3, 3, 3) if d != (1, 1, 1)]
+    steps = [tuple(v - 1 for v in d) for d in around]
+    assert not (bare & ~kept).any()
+    assert not (kept & ~touched).any()
+    assert not (touched & ~dilated(kept)).any()
+    assert len(pieces(map(tuple, np.argwhere(kept)), steps)) == len(pieces(map(tuple, np.argwhere(touched)), steps))
+    assert kept.sum() < 0.6 * touched.sum()
+
+
+def test_a_plate_has_no_hole():
+    """What a thin plate parts under touch, it parts when it is thinned."""
+    plate = turned(box_mesh((1, 1, 15.9), (31, 31, 16.1)), np.random.default_rng(5))
+    big = Mesh((plate.positions - 16) * (4, 4, 4) + 16, plate.triangles, plate.materials)  # it leaves the grid
+    scene, grid = one_object(big), Grid(5, (0.0, 0.0, 0.0), 1.0)
+    sides = [(-1, 0, 0), (1, 0, 0), (0, -1, 0), (0, 1, 0), (0, 0, -1), (0, 0, 1)]
+    parts = [
+        len(pieces(map(tuple, np.argwhere(dense(voxelize(scene, grid, rule=rule).voxels) == 0)), sides))
+        for rule in ("touch", "centre")
+    ]
+    assert parts == [2, 2]
+
+
+def test_an_open_surface_keeps_what_it_touches():
+    mesh = box_mesh((2, 3, 4), (29, 20, 21))
+    sheet = Mesh(mesh.positions, mesh.triangles[:2], mesh.materials[:2])
+    grid = Grid(5, (0.0, 0.0, 0.0), 1.0)
+    for fill in ("auto", "surface"):
+        made = [dense(voxelize(one_object(sheet), grid, fill=fill, rule=rule).voxels) for rule in ("touch", "centre")]
+        np.testing.assert_array_equal(*made)
+
+
+def test_a_surface_with_small_holes_is_that_without_but_near_them():
+    ball = icosphere(3, (16.0, 16.0, 16.0), 11.3)
+    holed = Mesh(ball.positions, ball.triangles[1:], ball.materials[1:])
+    grid = Grid(5, (0.0, 0.0, 0.0), 1.0)
+    voxels = dense(voxelize(one_object(holed), grid, rule="centre", thin="drop").voxels) != 0
+    wanted = centres_inside(snap(ball.positions, np.eye(4), grid.origin, 1.0), ball.triangles, 32)
+    at = ball.positions[ball.triangles[0]].mean(0)
+    far = np.linalg.norm(np.stack(np.meshgrid(*[np.arange(32) + 0.5] * 3, indexing="ij"), -1) - at, axis=-1) > 4
+    np.testing.assert_array_equal(voxels[far], wanted[far])
+
+
+@pytest.mark.parametrize("thin", ["keep", "drop"])
+def test_blocks_and_threads_give_the_bytes_and_the_reports_of_the_whole(thin):
+    scene = scene_of(wires(8, 256, 0.7, 1), box_mesh((3, 3, 3), (250.3, 90.2, 17.8)), icosphere(2, (99, 150, 90), 60))
+    grid = Grid(8, (0.0, 0.0, 0.0), 1.0)
+    at_once = voxelize(scene, grid, rule="centre", thin=thin, threads=1)
+    words = bytes(octree.build(at_once.voxels).words)
+    for threads in (2, 3):
+        assert (
+            bytes(octree.build(voxelize(scene, grid, rule="centre", thin=thin, threads=threads).voxels).words) == words
+        )
+    for side in (64, 128):
+        tree = octree.Assembly(8)
+        report = voxelize_in_blocks(
+            scene,
+            grid,
+            lambda voxels, tree=tree: tree.add(octree.build(voxels)),
+            block_side=side,
+            rule="centre",
+            thin=thin,
+        )
+        assert bytes(tree.octree().words) == words
+        assert report.objects == at_once.objects
+        assert report.warnings == at_once.warnings
+
+
+def test_a_thin_part_on_another_gives_it_its_material():
+    """A sticker of a tenth of a voxel before a wall shows on the wall."""
+    wall, sticker = box_mesh((2, 2, 2), (30, 30, 9.6), 1), box_mesh((10, 10, 9.6), (20, 20, 9.7), 2)
+    for order in ((wall, sticker), (sticker, wall)):
+        scene = scene_of(*order)
+        voxels = dense(voxelize(scene, Grid(5, (0.0, 0.0, 0.0), 1.0), rule="centre").voxels)
+        assert (voxels[10:20, 10:20, 9] == (2 if order[0] is sticker else 1)).all()
+    apart = box_mesh((10, 10, 10.0), (20, 20, 10.1), 2)
+    voxels = dense(voxelize(scene_of(wall, apart), Grid(5, (0.0, 0.0, 0.0), 1.0), rule="centre").voxels)
+    assert (voxels[10:20, 10:20, 9] == 2).all()
+    assert not voxels[:, :, 10].any()
+
+
+def test_an_object_without_voxels_is_named():
+    grid = Grid(4, (0.0, 0.0, 0.0), 1.0)
+    scene = one_object(box_mesh((3.1, 3.1, 3.1), (3.2, 3.2, 3.2)))
+    kept, dropped = (voxelize(scene, grid, rule="centre", thin=thin) for thin in ("keep", "drop"))
+    assert [one.voxels for one in kept.objects] == [1]
+    assert [one.voxels for one in dropped.objects] == [0]
+    assert [warning.kind for warning in dropped.warnings] == ["no-voxels"]
+
+
+def test_builds_by_a_rule(tmp_path):
+    """Through options, tiles and the manifest."""
+    whole = voxrt.build(EXAMPLES / "courtyard.glb", tmp_path / "whole", depth=10, rule="centre")
+    tiled = voxrt.build(EXAMPLES / "courtyard.glb", tmp_path / "tiled", depth=10, rule="centre", memory=1 << 26)
+    touched = voxrt.build(load(EXAMPLES / "courtyard.glb"), depth=10)
+    assert whole.outputs["mem"].read_bytes() == tiled.outputs["mem"].read_bytes()
+    assert 0.98 * touched.solid_voxels < whole.solid_voxels < touched.solid_voxels
+    assert json.loads(whole.outputs["manifest"].read_text())["source"]["settings"]["rule"] == "centre"
+
+
+@pytest.mark.parametrize(("name", "value"), [("rule", "center"), ("thin", "no")])
+def test_other_values_are_refused(name, value):
+    scene = one_object(box_mesh((1, 1, 1), (2, 2, 2)))
+    with pytest.raises(ValueError, match=f"^{name} must be "):
+        voxelize(scene, Grid(3, (0.0, 0.0, 0.0), 1.0), **{name: value})

@@ -1,0 +1,24 @@
+// Which of the voxels that a solid touches are filled.
+#pragma once
+
+#include <cstdint>
+
+namespace voxrt::voxelize {
+
+enum class Rule : std::uint8_t {
+    touch,  // all: the closed solid meets the voxel's interior
+    centre, // those whose centre lies in the closed solid; a surface without inside fills what it touches
+};
+
+/// What becomes of parts that are too thin for a rule.
+enum class Thin : std::uint8_t {
+    keep, // voxels are added so that none of `touch` is without a filled one among it and its 26 neighbours
+    drop, // nothing
+};
+
+struct VoxelRule {
+    Rule rule = Rule::touch;
+    Thin thin = Thin::keep;
+};
+
+} // namespace voxrt::voxelize

@@ -1,0 +1,21 @@
+// What tiles tell of bricks where a rule may leave voxels empty.
+#pragma once
+
+#include "../grid/brick.h"
+
+namespace voxrt::voxelize {
+
+/// A brick that surfaces pass, or that is solid in part.
+struct RuleBrick {
+    uint64_t code; // Morton code of the brick's corner / 8
+    Slices touched, filled, surface;
+};
+
+/// The voxels with surface that one object claimed in a brick.
+struct OwnedSurface {
+    uint64_t code;
+    uint32_t object;
+    Slices voxels;
+};
+
+} // namespace voxrt::voxelize

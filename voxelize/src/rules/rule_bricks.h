@@ -1,0 +1,151 @@
+// The bricks with surface of a grid under a rule, and what stands beside them.
+#pragma once
+
+#include "../grid/sparse_voxels.h"
+#include "rule_brick.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace voxrt::voxelize {
+
+/// The number of the octant that holds the brick with a code, or that of all octants.
+inline size_t find_octant(const SparseVoxels& voxels, uint64_t code) {
+    const auto corner = [&](size_t i) { return voxels.octant_codes[i] << 3 * (voxels.octant_levels[i] - 3); };
+    size_t low = 0, high = voxels.octant_codes.size();
+    while (low < high) { // octants are ordered by place: the last that begins at or before the brick
+        const size_t middle = (low + high) / 2;
+        if (corner(middle) <= code)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    const bool holds = low > 0 && voxels.octant_codes[low - 1] == code >> 3 * (voxels.octant_levels[low - 1] - 3);
+    return holds ? low - 1 : voxels.octant_codes.size();
+}
+
+class RuleBricks {
+public:
+    /// `voxels`: what is touched; it must outlive this. Bricks that are solid as a whole are added where a voxel beside
+    /// them is not filled.
+    RuleBricks(const SparseVoxels& voxels, std::vector<RuleBrick> bricks)
+        : voxels_(voxels), bricks_(std::move(bricks)) {
+        index();
+        std::vector<RuleBrick> beside;
+        for (const RuleBrick& brick : bricks_)
+            add_whole_beside(brick, beside);
+        if (beside.empty())
+            return;
+        sort(beside);
+        beside.erase(
+            std::unique(beside.begin(), beside.end(), [](const auto& a, const auto& b) { return a.code == b.code; }),
+            beside.end());
+        bricks_.insert(bricks_.end(), beside.begin(), beside.end());
+        index();
+    }
+
+    size_t size() const { return bricks_.size(); }
+    RuleBrick& operator[](size_t i) { return bricks_[i]; }
+    const RuleBrick& operator[](size_t i) const { return bricks_[i]; }
+
+    static constexpr uint32_t kEmpty = 0xFFFF'FFFF, kFull = 0xFFFF'FFFE;
+
+    /// The number of the brick with a code, or kEmpty or kFull where none is listed.
+    uint32_t find(uint64_t code) const {
+        for (size_t at = hash(code);; at = (at + 1) & (table_.size() - 1)) {
+            if (table_[at] == kEmpty)
+                return find_octant(voxels_, code) < voxels_.octant_codes.size() ? kFull : kEmpty;
+            if (bricks_[table_[at]].code == code)
+                return table_[at];
+        }
+    }
+
+    /// The 3 x 3 x 3 bricks around brick `i`, itself in the middle: x + 3 y + 9 z. Those without a bit in `wanted` are
+    /// not looked for.
+    std::array<uint32_t, 27> around(size_t i, uint32_t wanted = 0x7FF'FFFF) const {
+        const uint64_t code = bricks_[i].code;
+        const int x = int(gather_bits(code)), y = int(gather_bits(code >> 1)), z = int(gather_bits(code >> 2));
+        std::array<uint32_t, 27> found;
+        for (int n = 0; n < 27; ++n)
+            found[size_t(n)] = n == 13           ? uint32_t(i)
+                               : wanted >> n & 1 ? find_at(x + n % 3 - 1, y + n / 3 % 3 - 1, z + n / 9 - 1)
+                                                 : kEmpty;
+        return found;
+    }
+
+    /// One set of voxels of the bricks around; `of` gives it of a listed brick.
+    template <class Of> std::array<const Slices*, 27> sets(const std::array<uint32_t, 27>& around, Of of) const {
+        static constexpr Slices none{};
+        static constexpr Slices all = [] {
+            Slices s{};
+            s.fill(~uint64_t{0});
+            return s;
+        }();
+        std::array<const Slices*, 27> found;
+        for (size_t n = 0; n < 27; ++n)
+            found[n] = around[n] == kEmpty ? &none : around[n] == kFull ? &all : &of(bricks_[around[n]], around[n]);
+        return found;
+    }
+
+private:
+    size_t hash(uint64_t code) const { return size_t(code * 0x9E37'79B9'7F4A'7C15 >> shift_); }
+
+    static void sort(std::vector<RuleBrick>& bricks) {
+        std::sort(bricks.begin(), bricks.end(), [](const auto& a, const auto& b) { return a.code < b.code; });
+    }
+
+    void index() {
+        sort(bricks_);
+        int bits = 4;
+        while (size_t{1} << bits < 2 * bricks_.size())
+            ++bits;
+        shift_ = 64 - bits;
+        table_.assign(size_t{1} << bits, kEmpty);
+        for (size_t i = 0; i < bricks_.size(); ++i) {
+            size_t at = hash(bricks_[i].code);
+            while (table_[at] != kEmpty)
+                at = (at + 1) & (table_.size() - 1);
+            table_[at] = uint32_t(i);
+        }
+    }
+
+    uint32_t find_at(int x, int y, int z) const {
+        const int side = voxels_.depth > 3 ? 1 << (voxels_.depth - 3) : 1;
+        if (x < 0 || y < 0 || z < 0 || x >= side || y >= side || z >= side)
+            return kEmpty;
+        return find(morton(uint32_t(x), uint32_t(y), uint32_t(z)));
+    }
+
+    void add_whole_beside(const RuleBrick& brick, std::vector<RuleBrick>& beside) const {
+        Slices removed;
+        uint64_t any = 0;
+        for (int z = 0; z < kBrickSide; ++z)
+            any |= removed[z] = brick.touched[z] & ~brick.filled[z];
+        if (any == 0)
+            return;
+        constexpr uint64_t first_column = 0x0101'0101'0101'0101;
+        const bool reaches[6] = {(any & first_column) != 0, (any & first_column << 7) != 0,
+                                 (any & 0xFF) != 0,         (any >> 56) != 0,
+                                 removed[0] != 0,           removed[7] != 0};
+        const int at[3] = {int(gather_bits(brick.code)), int(gather_bits(brick.code >> 1)),
+                           int(gather_bits(brick.code >> 2))};
+        for (int side = 0; side < 6; ++side) {
+            int to[3] = {at[0], at[1], at[2]};
+            to[side / 2] += side % 2 == 0 ? -1 : 1;
+            if (!reaches[side] || find_at(to[0], to[1], to[2]) != kFull)
+                continue;
+            RuleBrick whole{morton(uint32_t(to[0]), uint32_t(to[1]), uint32_t(to[2])), {}, {}, {}};
+            whole.touched.fill(~uint64_t{0});
+            whole.filled.fill(~uint64_t{0});
+            beside.push_back(whole);
+        }
+    }
+
+    const SparseVoxels& voxels_;
+    std::vector<RuleBrick> bricks_; // by code
+    std::vector<uint32_t> table_;   // open addressing: numbers of bricks
+    int shift_ = 60;
+};
+
+} // namespace voxrt::voxelize

@@ -1,0 +1,271 @@
+#include "rule_voxels.h"
+
+#include "brick_window.h"
+#include "replaced_bricks.h"
+#include "rule_bricks.h"
+#include "thin_parts.h"
+
+#include <span>
+
+namespace voxrt::voxelize {
+namespace {
+
+Slices without(const Slices& a, const Slices& b) {
+    Slices found;
+    for (int z = 0; z < kBrickSide; ++z)
+        found[z] = a[z] & ~b[z];
+    return found;
+}
+
+/// The materials of a solid brick's voxels: one, or by Morton code in the brick.
+struct BrickMaterials {
+    uint8_t only = 0;
+    const std::array<uint8_t, 512>* cells = nullptr;
+    uint8_t at(size_t place) const { return cells == nullptr ? only : (*cells)[place]; }
+};
+
+BrickMaterials materials_of(const SparseVoxels& voxels, uint64_t code) {
+    const auto& codes = voxels.brick_codes;
+    const auto brick = size_t(std::lower_bound(codes.begin(), codes.end(), code) - codes.begin());
+    if (brick == codes.size() || codes[brick] != code)
+        return {voxels.octant_materials[find_octant(voxels, code)]};
+    if (voxels.brick_rows[brick] < 0)
+        return {voxels.brick_materials[brick]};
+    return {0, &voxels.cells[size_t(voxels.brick_rows[brick])]};
+}
+
+/// The sides of a voxel in their order.
+constexpr int kSides[6] = {12, 14, 10, 16, 4, 22}; // x + 3 y + 9 z of the voxel beside it
+constexpr uint32_t kSideBricks = 1u << 12 | 1u << 14 | 1u << 10 | 1u << 16 | 1u << 4 | 1u << 22;
+
+class RuledVoxels {
+public:
+    RuledVoxels(const SparseVoxels& around, RuleFindings& findings)
+        : voxels_(around), bricks_(around, std::move(findings.bricks)), owned_(std::move(findings.owned)) {
+        std::sort(owned_.begin(), owned_.end(), [](const OwnedSurface& a, const OwnedSurface& b) {
+            return a.code != b.code ? a.code < b.code : a.object < b.object;
+        });
+    }
+
+    RuleBricks& bricks() { return bricks_; }
+
+    /// Finds the voxels of parts that have none of their own. The bricks must be final.
+    void find_orphans(const Workers& workers) {
+        orphans_.assign(bricks_.size(), Slices{});
+        if (std::all_of(owned_.begin(), owned_.end(), [this](const auto& o) { return o.object == owned_[0].object; }))
+            return; // nothing else could take a material
+        for_each_brick(workers, [this](size_t i) {
+            if (!is_empty(without(bricks_[i].touched, bricks_[i].filled)))
+                orphans_[i] = orphans_of(i);
+        });
+    }
+
+    /// The bricks of an area that differ from what is touched.
+    ReplacedBricks replaced(const BrickArea& area, const Workers& workers) const {
+        std::vector<ReplacedBricks> found((bricks_.size() + kBricks - 1) / kBricks);
+        for_each_brick(workers, [&](size_t i) {
+            const uint64_t code = bricks_[i].code;
+            const uint32_t x = gather_bits(code), y = gather_bits(code >> 1);
+            if (x >= area.x0 && x < area.x1 && y >= area.y0 && y < area.y1)
+                add_replaced(i, found[i / kBricks]);
+        });
+        ReplacedBricks all;
+        for (ReplacedBricks& part : found) {
+            for (ReplacedBrick& brick : part.bricks) {
+                brick.row += uint32_t(all.cells.size());
+                all.bricks.push_back(brick);
+            }
+            all.cells.insert(all.cells.end(), part.cells.begin(), part.cells.end());
+            part = {};
+        }
+        return all;
+    }
+
+    void count_lost(const BrickArea& area, std::vector<int64_t>& lost) const {
+        for (const OwnedSurface& part : owned_) {
+            const uint32_t x = gather_bits(part.code), y = gather_bits(part.code >> 1);
+            if (x >= area.x0 && x < area.x1 && y >= area.y0 && y < area.y1)
+                lost[part.object] += count(without(part.voxels, bricks_[bricks_.find(part.code)].filled));
+        }
+    }
+
+private:
+    static constexpr size_t kBricks = 64; // per job
+
+    template <class Work> void for_each_brick(const Workers& workers, Work work) const {
+        workers.run((bricks_.size() + kBricks - 1) / kBricks, [&](size_t job, int) {
+            for (size_t i = job * kBricks; i < std::min(bricks_.size(), (job + 1) * kBricks); ++i) {
+                count_work(50);
+                work(i);
+            }
+        });
+    }
+
+    std::span<const OwnedSurface> owned_in(uint64_t code) const {
+        const auto [from, to] = std::equal_range(owned_.begin(), owned_.end(), OwnedSurface{code, 0, {}},
+                                                 [](const auto& a, const auto& b) { return a.code < b.code; });
+        return {from, to};
+    }
+
+    Slices orphans_of(size_t i) const {
+        const std::span<const OwnedSurface> own = owned_in(bricks_[i].code);
+        const std::array<uint32_t, 27> around = bricks_.around(i);
+        bool alone = own.size() == 1;
+        for (const uint32_t other : around)
+            if (alone && other < RuleBricks::kFull)
+                for (const OwnedSurface& part : owned_in(bricks_[other].code))
+                    alone = alone && part.object == own[0].object;
+        if (alone)
+            return {}; // nothing else could take the material
+        Slices bare =
+            beside(around, [this](uint32_t n) { return without(bricks_[n].filled, bricks_[n].surface); }, true);
+        Slices found{};
+        for (const OwnedSurface& part : own) {
+            std::array<Slices, 27> sets{};
+            std::array<const Slices*, 27> near;
+            for (size_t n = 0; n < 27; ++n) {
+                near[n] = &sets[n];
+                if (around[n] >= RuleBricks::kFull)
+                    continue;
+                for (const OwnedSurface& other : owned_in(bricks_[around[n]].code))
+                    if (other.object == part.object)
+                        for (int z = 0; z < kBrickSide; ++z)
+                            sets[n][z] |= other.voxels[z] & bricks_[around[n]].filled[z];
+            }
+            BrickWindow<1> window;
+            window.gather(near);
+            window.dilate();
+            const Slices lost = without(without(part.voxels, bricks_[i].filled), window.middle());
+            for (int z = 0; z < kBrickSide; ++z)
+                found[z] |= lost[z] & ~bare[z];
+        }
+        return found;
+    }
+
+    /// The voxels of a brick with one of a set beside them. `of`: the set in a listed brick; `whole`: whether all of a
+    /// brick that is solid as a whole belongs to it.
+    template <class Of> Slices beside(const std::array<uint32_t, 27>& around, Of of, bool whole) const {
+        Slices found{};
+        for (int side = 0; side < 6; ++side) {
+            const Slices shifted = shifted_by(around, side, of, whole);
+            for (int z = 0; z < kBrickSide; ++z)
+                found[z] |= shifted[z];
+        }
+        return found;
+    }
+
+    /// The voxels of a brick whose neighbour at a side belongs to a set.
+    template <class Of> Slices shifted_by(const std::array<uint32_t, 27>& around, int side, Of of, bool whole) const {
+        auto set = [&](uint32_t n) {
+            if (n < RuleBricks::kFull)
+                return of(n);
+            Slices all;
+            all.fill(n == RuleBricks::kFull && whole ? ~uint64_t{0} : 0);
+            return all;
+        };
+        constexpr uint64_t first = 0x0101'0101'0101'0101;
+        const Slices here = set(around[13]), there = set(around[size_t(kSides[side])]);
+        Slices found;
+        for (int z = 0; z < kBrickSide; ++z)
+            switch (side) {
+            case 0:
+                found[z] = (here[z] & ~(first << 7)) << 1 | (there[z] & first << 7) >> 7;
+                break;
+            case 1:
+                found[z] = (here[z] & ~first) >> 1 | (there[z] & first) << 7;
+                break;
+            case 2:
+                found[z] = here[z] << 8 | there[z] >> 56;
+                break;
+            case 3:
+                found[z] = here[z] >> 8 | there[z] << 56;
+                break;
+            case 4:
+                found[z] = z > 0 ? here[z - 1] : there[kBrickSide - 1];
+                break;
+            default:
+                found[z] = z + 1 < kBrickSide ? here[z + 1] : there[0];
+            }
+        return found;
+    }
+
+    void add_replaced(size_t i, ReplacedBricks& out) const {
+        const RuleBrick& brick = bricks_[i];
+        const std::array<uint32_t, 27> around = bricks_.around(i, kSideBricks);
+        const auto removed = [this](uint32_t n) { return without(bricks_[n].touched, bricks_[n].filled); };
+        const auto orphans = [this](uint32_t n) { return orphans_[n]; };
+        const Slices bare = without(brick.filled, brick.surface);
+        Slices takers[6], done{};
+        for (int side = 0; side < 6; ++side) {
+            const Slices shown = shifted_by(around, side, removed, false);
+            const Slices lying = shifted_by(around, side, orphans, false);
+            for (int z = 0; z < kBrickSide; ++z) {
+                takers[side][z] = ((shown[z] & bare[z]) | (lying[z] & brick.filled[z] & brick.surface[z])) & ~done[z];
+                done[z] |= takers[side][z];
+            }
+        }
+        if (is_empty(done) && is_empty(removed(uint32_t(i))))
+            return;
+        ReplacedBrick& replaced = out.bricks.emplace_back();
+        replaced = {brick.code, morton_order(brick.filled), 0, 0};
+        if (is_empty(brick.filled))
+            return;
+        const BrickMaterials own = materials_of(voxels_, brick.code);
+        bool is_uniform = own.cells == nullptr;
+        BrickMaterials beside[6];
+        for (int side = 0; side < 6; ++side) {
+            if (is_empty(takers[side]))
+                continue;
+            const uint32_t other = around[size_t(kSides[side])];
+            beside[side] = other < RuleBricks::kFull ? materials_of(voxels_, bricks_[other].code) : own;
+            is_uniform = is_uniform && beside[side].cells == nullptr && beside[side].only == own.only;
+        }
+        if (is_uniform) {
+            replaced.material = own.only;
+            return;
+        }
+        std::array<uint8_t, 512> cells{};
+        for (int z = 0; z < kBrickSide; ++z)
+            for (uint64_t left = brick.filled[z]; left != 0; left &= left - 1) {
+                const int bit = std::countr_zero(left);
+                int at[3] = {column_x(bit), column_y(bit), z};
+                const size_t place = morton(uint32_t(at[0]), uint32_t(at[1]), uint32_t(at[2]));
+                if (!(done[z] >> bit & 1)) {
+                    cells[place] = own.at(place);
+                    continue;
+                }
+                int side = 0;
+                while (!(takers[side][z] >> bit & 1))
+                    ++side;
+                int& moved = at[side / 2];
+                moved += side % 2 == 0 ? -1 : 1;
+                const BrickMaterials& from = moved < 0 || moved >= kBrickSide ? beside[side] : own;
+                moved &= 7;
+                cells[place] = from.at(morton(uint32_t(at[0]), uint32_t(at[1]), uint32_t(at[2])));
+            }
+        replaced.material = only_material(cells);
+        if (replaced.material == 0) {
+            replaced.row = uint32_t(out.cells.size());
+            out.cells.push_back(cells);
+        }
+    }
+
+    const SparseVoxels& voxels_;
+    RuleBricks bricks_;
+    std::vector<OwnedSurface> owned_; // by code and object
+    std::vector<Slices> orphans_;
+};
+
+} // namespace
+
+void apply_rule(SparseVoxels& voxels, const SparseVoxels& around, RuleFindings findings, const BrickArea& area,
+                Thin thin, std::vector<int64_t>& lost, const Workers& workers) {
+    RuledVoxels ruled(around, findings);
+    if (thin == Thin::keep)
+        keep_thin_parts(ruled.bricks(), workers);
+    ruled.find_orphans(workers);
+    ruled.count_lost(area, lost);
+    replace_bricks(voxels, ruled.replaced(area, workers));
+}
+
+} // namespace voxrt::voxelize

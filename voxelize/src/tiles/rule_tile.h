@@ -1,0 +1,80 @@
+// What a rule other than `touch` must know of one tile: which voxels the rule fills, and which ones have surface.
+//
+// The voxels that objects touch are claimed as always (tile_voxels.h). Beside them stand two unions over all objects:
+// what the rule fills, and what surfaces pass. When the tile is done, its bricks with surface are listed; rule_voxels.h
+// goes on with the bricks of all tiles.
+#pragma once
+
+#include "../rules/rule_brick.h"
+#include "tile_voxels.h"
+
+#include <vector>
+
+namespace voxrt::voxelize {
+
+class RuleTile {
+public:
+    /// For tiles of a grid of `side` voxels.
+    explicit RuleTile(int side) : filled_(side), surface_(side) {}
+
+    void clear() {
+        filled_.clear();
+        surface_.clear();
+        owned_.clear();
+    }
+
+    /// What is added from now on belongs to an object.
+    void begin(uint32_t object) { object_ = object; }
+
+    /// Bricks from <= k < to of a column are filled, and have no surface.
+    void add_full(int column, int from, int to) { filled_.claim_full(column, from, to, kAny); }
+
+    /// `claimed`: those of the voxels with surface that no earlier object had.
+    void add(int column, int k, const Slices& filled, const Slices& surface, const Slices& claimed) {
+        if (!is_empty(filled))
+            filled_.claim(column, k, filled, kAny, nullptr);
+        if (is_empty(surface))
+            return;
+        surface_.claim(column, k, surface, kAny, nullptr);
+        if (!is_empty(claimed))
+            owned_.push_back({uint64_t(column) * uint64_t(filled_.height()) + uint64_t(k), object_, claimed});
+    }
+
+    /// Appends the bricks of the tile at (tile_x, tile_y), in tiles, and who owns their surface.
+    void list(const TileVoxels& tile, int tile_x, int tile_y, std::vector<RuleBrick>& bricks,
+              std::vector<OwnedSurface>& owned) const {
+        for (int column = 0; column < kTileColumns; ++column) {
+            if (!tile.column_used(column))
+                continue;
+            for (int k = 0; k < tile.height(); ++k) {
+                const uint32_t slot = *tile.slots(column, k), surface = *surface_.slots(column, k);
+                if (slot == 0 || (slot < TileVoxels::kFirstBrick && surface == 0))
+                    continue;
+                const Slices touched = tile.mask_of(slot);
+                Slices filled = filled_.mask_of(*filled_.slots(column, k));
+                for (int z = 0; z < kBrickSide; ++z)
+                    filled[z] &= touched[z];
+                bricks.push_back({code_of(column, k, tile_x, tile_y), touched, filled, surface_.mask_of(surface)});
+            }
+        }
+        for (const OwnedSurface& part : owned_) {
+            const auto column = int(part.code / uint64_t(filled_.height()));
+            const auto k = int(part.code % uint64_t(filled_.height()));
+            owned.push_back({code_of(column, k, tile_x, tile_y), part.object, part.voxels});
+        }
+    }
+
+private:
+    static constexpr uint8_t kAny = 1; // a material: all voxels here have the same
+
+    static uint64_t code_of(int column, int k, int tile_x, int tile_y) {
+        return morton(uint32_t(tile_x * kTileBricks + column % kTileBricks),
+                      uint32_t(tile_y * kTileBricks + column / kTileBricks), uint32_t(k));
+    }
+
+    TileVoxels filled_, surface_;
+    uint32_t object_ = 0;
+    std::vector<OwnedSurface> owned_; // `code`: the slot in the tile
+};
+
+} // namespace voxrt::voxelize
