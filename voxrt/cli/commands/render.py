@@ -51,7 +51,7 @@ def run(command: RenderCommand) -> None:
     if command.check:
         checked = voxrt.check(memory, camera, **replace(options, root=roots[0]).for_engines())
         frame, wrong_pixels = getattr(checked, engine), checked.wrong_pixels
-        voxrt.save_picture(frame.colour, file)
+        frame.save(file)
     else:
         frame = _save([voxrt.render(memory, camera, options, root=root) for root in roots], file, blob.animation)
     if command.reporting.json:
@@ -184,7 +184,7 @@ def _save(frames: list[Frame], file: Path, animation: Animation | None) -> Frame
     if _is_animated(file):
         voxrt.save_animation([one.colour for one in frames], file, animation.period if animation else None)
     else:
-        voxrt.save_picture(frames[0].colour, file)
+        frames[0].save(file)
     return frames[0]
 
 
@@ -197,7 +197,7 @@ def _take_path(command: RenderCommand, memory: Rom, options: RenderOptions, file
     path, results, wrong = read_cameras(command.cameras, memory, command.size), [], 0
     for picture in take_pictures(job, path, command.scheduler, command.workers):
         target = file.with_stem(f"{file.stem}-{picture.number:04d}")
-        voxrt.save_picture(picture.frame.colour, target)
+        picture.frame.save(target)
         wrong += picture.wrong_pixels or 0
         view = voxrt.Picture(picture.frame, path[picture.number], options.chosen_engine)
         results.append(render_result(view, target, picture.wrong_pixels))
