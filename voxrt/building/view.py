@@ -12,6 +12,8 @@ from voxrt.views.viewpoint import ViewpointError, aim_camera, authored_camera, a
 from voxrt.voxelize import SceneWarning
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from voxrt.building.result import BuildResult
     from voxrt.octree.camera import Camera
     from voxrt.options.build_options import BuildOptions
@@ -68,10 +70,11 @@ def preview(result: BuildResult, options: BuildOptions) -> Picture:
     )
 
 
-def check_preview(result: BuildResult) -> sim.EngineCheck:
+def check_preview(result: BuildResult, progress: Callable[[int, int], None] | None = None) -> sim.EngineCheck:
     """Render the view of a preview by both engines, one ray per pixel, and compare them.
 
-    SimulatorError if the simulated hardware is missing, or cannot hold the memory, the camera or the light.
+    `progress` is called with the rows that are done and with all rows. SimulatorError if the simulated hardware is
+    missing, or cannot hold the memory, the camera or the light.
     """
     assert result.preview is not None
     from voxrt.views.pictures import config_of  # noqa: PLC0415 - as above
@@ -79,7 +82,12 @@ def check_preview(result: BuildResult) -> sim.EngineCheck:
     height, width = result.preview.frame.material.shape
     lighting = PLAIN_LIGHTING if result.lighting is None else result.lighting
     return sim.check(
-        result.rom, result.preview.camera, (width, height), lighting=lighting, config=config_of(result.lighting)
+        result.rom,
+        result.preview.camera,
+        (width, height),
+        lighting=lighting,
+        config=config_of(result.lighting),
+        progress=progress,
     )
 
 

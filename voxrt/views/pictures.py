@@ -24,7 +24,7 @@ from voxrt.voxelize.arguments import instance, whole_array
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
 
     from numpy.typing import ArrayLike
 
@@ -78,7 +78,12 @@ class Picture:
 
 
 def render(
-    rom: Rom, camera: Camera | None = None, options: RenderOptions | None = None, **keywords: Unpack[RenderKeywords]
+    rom: Rom,
+    camera: Camera | None = None,
+    options: RenderOptions | None = None,
+    *,
+    progress: Callable[[int, int], None] | None = None,
+    **keywords: Unpack[RenderKeywords],
 ) -> Frame:
     """Render a picture of a memory.
 
@@ -90,6 +95,8 @@ def render(
         The camera. None shows the whole scene from the front right and above.
     options
         How to render; None for the defaults.
+    progress
+        Called now and then with the rows that are done and those of all samples.
     **keywords
         The options of :class:`RenderOptions` by name, such as `size` and `engine`. They take precedence over `options`.
 
@@ -117,7 +124,11 @@ def render(
     rom = instance("rom", rom, Rom)
     options = merge("render", RenderOptions, options, keywords)
     return sim.render(
-        rom, camera or aim_camera(rom, options.size), engine=options.chosen_engine, **options.for_engines()
+        rom,
+        camera or aim_camera(rom, options.size),
+        engine=options.chosen_engine,
+        progress=progress,
+        **options.for_engines(),
     )
 
 
