@@ -66,6 +66,13 @@ def test_the_wheel_has_both_commands_and_the_reader():
         assert callable(point.load())
 
 
+def test_the_wheel_has_the_manual_page_for_both_commands():
+    pages = [file for file in distribution(NAME).files if file.parent.name == "man1"]
+    assert {file.name for file in pages} == {"voxrt.1", "voxrt-build.1"}
+    for file in pages:
+        assert f'"voxrt {voxrt.__version__}"' in Path(file.locate()).read_text(encoding="utf-8")
+
+
 def test_every_installation_text_names_an_extra_of_the_checkout():
     wrong = []
     advised = set()
