@@ -10,12 +10,14 @@ from __future__ import annotations
 import ast
 import inspect
 import pkgutil
+import re
+from collections import Counter
 from importlib import import_module
-from itertools import pairwise
+from itertools import chain, pairwise
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from pathlib import Path
     from types import ModuleType
 
 FRONT = "voxrt"
@@ -29,6 +31,27 @@ PACKAGES = (
     "voxrt.board",
     "voxrt.serve",
 )
+
+TASKS = {
+    "Build a memory": ("build", "BuildOptions", "BuildResult", "Bake", "BudgetFit", "InteriorFit", "BOARDS"),
+    "Build an animation": ("build_animation", "frame_times", "animation_camera", "save_animation"),
+    "Voxelize arrays and scenes": (
+        "voxelize_mesh", "mesh_scene", "load", "Scene", "SceneWarning", "Material", "fit_grid", "Grid",
+    ),
+    "Read, write and convert memories": (
+        "read_rom", "read_any", "rom_info", "convert", "WRITABLE_SUFFIXES", "Rom", "Octree",
+    ),
+    "Make pictures": (
+        "render", "RenderOptions", "Frame", "Picture", "save_picture", "aim_camera", "Camera", "Lighting",
+    ),
+    "Follow rays": ("follow_ray", "RayPath", "cast_rays", "RayHits"),
+    "Compare": (
+        "diff", "differing_regions", "Region", "compare", "comparison_sheet", "likeness_curve", "draw_likeness_curve",
+        "LikenessAtDepth",
+    ),
+    "Simulate the hardware": ("check", "shader_features"),
+}  # fmt: skip
+"""What the names of the front page are for. Its packages and its exceptions are listed of themselves."""
 
 
 def exports(package: str) -> list[str]:
@@ -56,6 +79,9 @@ def _own_names(module: ModuleType) -> list[str]:
     ]
 
 
+_ROLES = {"Functions": "func", "Classes": "class", "Exceptions": "exc", "Constants and types": "data"}
+
+
 def _value(name: str) -> object:
     module, _, attribute = name.rpartition(".")
     return getattr(import_module(module), attribute)
@@ -69,10 +95,11 @@ def _kind(name: str) -> str:
 
 
 def _constant_text(name: str) -> str:
-    """Give the text that follows a constant where it is assigned; packages import it from there."""
+    """Give the text that follows a constant where it is assigned; stubs of packages say where that is."""
     package, _, attribute = name.rpartition(".")
     module = import_module(package)
-    tree = ast.parse(inspect.getsource(module))
+    stub = Path(f"{module.__file__}i")  # what a package exports stands there alone
+    tree = ast.parse(stub.read_text(encoding="utf-8") if stub.exists() else inspect.getsource(module))
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom) and any(alias.name == attribute for alias in node.names):
             return _constant_text(f"{node.module}.{attribute}")
@@ -97,6 +124,36 @@ def _entry(name: str) -> str:
     return f".. autoclass:: {name}\n   :members:\n"
 
 
+def task_map(homes: dict[str, str]) -> list[str]:
+    """Give the lines that list the names of the front page by task; `homes`: what other pages describe.
+
+    ValueError if the tasks do not name each of them once.
+    """
+    names = {name: _kind(f"{FRONT}.{name}") for name in import_module(FRONT).__all__}
+    tasks = {**TASKS, "Errors": tuple(name for name, kind in names.items() if kind == "Exceptions")}
+    packages = [name for name in names if inspect.ismodule(_value(f"{FRONT}.{name}"))]
+    placed = Counter([*chain(*tasks.values()), *packages])
+    if wrong := {name for name in {*names, *placed} if name not in names or placed[name] != 1}:
+        raise ValueError(f"docs/make_reference.py: TASKS must name each export of voxrt once: {sorted(wrong)}")
+    lines = ["By task", "-------", ""]
+    for task, members in tasks.items():
+        lines += [f".. rubric:: {task}", ""]
+        for name in members:
+            full = f"{FRONT}.{name}"
+            home = homes.get(full, full)
+            shown = f"``{full}``, " if home != full else ""
+            lines.append(f"- {shown}:py:{_ROLES[names[name]]}:`{home}`: {_summary(full)}")
+        lines.append("")
+    return lines
+
+
+def _summary(name: str) -> str:
+    """Give the first sentence about a name, without links, whose names are short for the module that they are in."""
+    text = _constant_text(name) if _kind(name) == "Constants and types" else inspect.getdoc(_value(name)) or ""
+    first = re.split(r"(?<=[^.])\.(?=\s|$)", " ".join(text.split()))[0]
+    return re.sub(r":\w+:`~?([^`<]+?)(?: <[^`]*>)?`", r"``\1``", first)
+
+
 def page(package: str, listed: dict[int, str] | None = None) -> str:
     """Give the text of a package's page. What other pages describe, `listed` by its identity, it only refers to."""
     names = exports(package)
@@ -105,15 +162,13 @@ def page(package: str, listed: dict[int, str] | None = None) -> str:
     here = [name for name in names if name not in elsewhere and name not in rooms]
     lines = [package, "=" * len(package), "", f".. automodule:: {package}", "   :no-members:", ""]
     summarized = [name.removeprefix(f"{package}.") for name in here if _kind(name) != "Constants and types"]
-    if summarized:
+    if listed is not None:
+        lines += task_map(elsewhere)
+    elif summarized:
         lines += [".. autosummary::", "", *(f"   {name}" for name in summarized), ""]
     if rooms:
         lines += ["Packages:", "", *(f"- :doc:`{name}`" for name in rooms), ""]
-    if elsewhere:
-        lines += ["Also here, and described with their packages:", ""]
-        roles = {"Functions": "func", "Classes": "class", "Exceptions": "exc", "Constants and types": "data"}
-        lines += [f"- ``{name}``: :py:{roles[_kind(name)]}:`{home}`" for name, home in elsewhere.items()] + [""]
-    for kind in ("Functions", "Classes", "Exceptions", "Constants and types"):
+    for kind in _ROLES:
         chosen = [name for name in here if _kind(name) == kind]
         if chosen:
             lines += [kind, "-" * len(kind), "", *(_entry(name) for name in chosen)]

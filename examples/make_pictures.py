@@ -1,6 +1,6 @@
 """Make the README's pictures: ``python examples/make_pictures.py`` renders the example scenes by the ray tracer.
 
-The picture of octants needs ``voxrt-build[view]``, those of the comparison ``voxrt-build[compare]``.
+The picture of octants needs PyVista, those of the comparison need Open3D and matplotlib.
 """
 
 from __future__ import annotations

@@ -1,4 +1,5 @@
 # The verilated ray tracer; src/rtl/module.cpp and src/rtl/core_module.cpp document it.
+from collections.abc import Callable
 from typing import TypedDict
 
 import numpy as np
@@ -55,6 +56,7 @@ class Tracer:
         interval: int = 3,
         jitter: int = 0,
         dram_seed: int = 0,
+        progress: Callable[[int], object] | None = None,
     ) -> RenderResult: ...
 
 class Core:

@@ -5,8 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from voxrt.sim.image import encode_png, save_png, show_picture
+
 if TYPE_CHECKING:
-    import numpy as np
+    import os
+
     from numpy.typing import NDArray
 
     from voxrt.sim.external_memory import CacheCost
@@ -40,9 +45,9 @@ class RenderCost:
     cache: CacheCost | None = None
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, eq=False, slots=True, repr=False)
 class Frame:
-    """A rendered picture; row 0 is the top.
+    """A rendered picture; row 0 is the top. A notebook shows it.
 
     Attributes
     ----------
@@ -54,9 +59,46 @@ class Frame:
         uint8, shape (H, W): axis of the face crossed (0 x, 1 y, 2 z) or :data:`FACE_NONE`.
     cost
         Rays, words, cycles and seconds.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> frame = voxrt.render(voxrt.build("examples/house.obj", depth=4).rom, size=(64, 48))
+    >>> frame
+    <Frame: 64x48 pixels, 5 materials>
+    >>> frame.save("house.png")
     """
 
     colour: NDArray[np.uint8]
     material: NDArray[np.uint8]
     face: NDArray[np.uint8]
     cost: RenderCost
+
+    def __repr__(self) -> str:
+        height, width = self.material.shape
+        seen = np.count_nonzero(np.unique(self.material))
+        cycles = "" if self.cost.cycles is None else f", {self.cost.cycles / self.cost.rays:.2f} cycles per ray"
+        return f"<Frame: {width}x{height} pixels, {seen} {'material' if seen == 1 else 'materials'}{cycles}>"
+
+    def _repr_png_(self) -> bytes:
+        return encode_png(self.colour)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the picture as a PNG file, and make its folder. An interruption leaves the old file or the new one.
+
+        Raises
+        ------
+        OutputError
+            The file cannot be written.
+        """
+        save_png(path, self.colour)
+
+    def show(self) -> None:
+        """Show the picture in the notebook's cell, or in the program that opens pictures.
+
+        Raises
+        ------
+        SimulatorError
+            There is no such program.
+        """
+        show_picture(self.colour)

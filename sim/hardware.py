@@ -14,6 +14,8 @@ from voxrt.sim.frame import Frame, RenderCost
 from voxrt.sim.verilated import import_verilated
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from voxrt.octree.camera import Camera, Lighting
 
 _FRAME_LIMIT = (1 << 12) - 1
@@ -59,11 +61,12 @@ def render_hardware(
     root: int,
     scale: int,
     lod: float,
+    progress: Callable[[int], None] | None,
 ) -> Frame:
     """Render a frame on the verilated ray tracer.
 
     Arguments and errors are those of :func:`voxrt.sim.render`, checked. `scale` is the register ``lod.scale``; 0
-    without level of detail.
+    without level of detail. `progress` is called with the rows done.
     """
     started = time.perf_counter()
     _rtl = _ray_tracer(config)
@@ -117,6 +120,7 @@ def render_hardware(
         dram_seed=memory.seed,
         lod_scale=scale,
         root=root,
+        progress=progress,
     )
     if pixels["errors"] == ["direction overflow"]:  # the camera's directions fit: it is the light's
         raise SimulatorError(

@@ -1,12 +1,15 @@
-"""Frames as picture files."""
+"""Pictures as PNG files, and in a window or a notebook."""
 
 from __future__ import annotations
 
 import io
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from voxrt.export.atomic import write_atomically
+from voxrt.export.outputs import check_file, writing
+from voxrt.sim.errors import SimulatorError
 
 if TYPE_CHECKING:
     import os
@@ -45,3 +48,31 @@ def write_png(path: str | os.PathLike[str], colour: NDArray[np.uint8]) -> None:
     >>> write_png("black.png", np.zeros((48, 64, 3), np.uint8))
     """
     write_atomically(Path(path), encode_png(colour))
+
+
+def save_png(path: str | os.PathLike[str], colour: NDArray[np.uint8]) -> None:
+    """Write a picture as :func:`write_png` does, and make its folder; OutputError if that is not possible.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> save_png("pictures/black.png", np.zeros((48, 64, 3), np.uint8))
+    """
+    path = Path(path)
+    check_file(path)
+    with writing(path):
+        write_png(path, colour)
+
+
+def show_picture(colour: NDArray[np.uint8]) -> None:
+    """Show a picture in the notebook's cell, or in the program that opens pictures.
+
+    SimulatorError if there is no such program.
+    """
+    from PIL import Image, ImageShow  # noqa: PLC0415 - as above
+
+    ipython = sys.modules.get("IPython")
+    if ipython is not None and hasattr(ipython.get_ipython(), "kernel"):
+        ipython.display.display(ipython.display.Image(data=encode_png(colour)))
+    elif not ImageShow.show(Image.fromarray(colour)):
+        raise SimulatorError("no program here shows pictures; write a file: save('picture.png')")

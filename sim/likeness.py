@@ -1,6 +1,6 @@
 """Voxels compared with the meshes that they were made from: two pictures from the same camera.
 
-The meshes are ray-cast by Open3D (Intel Embree), an optional dependency: ``pip install 'voxrt-build[compare]'``. Both
+The meshes are ray-cast by Open3D (Intel Embree), an optional dependency: ``pip install open3d``. Both
 sides use the same rays, in voxels, and the same shading rule, so that only the geometry differs.
 """
 
@@ -266,7 +266,7 @@ def _open3d() -> Any:  # noqa: ANN401 - Open3D has no types
         import open3d  # noqa: PLC0415 - 900 MB that few need
     except ModuleNotFoundError as error:
         raise SimulatorError(
-            "comparing with the source meshes needs Open3D, which is not installed; pip install 'voxrt-build[compare]'"
+            "comparing with the source meshes needs Open3D, which is not installed; pip install open3d"
         ) from error
     except ImportError as error:
         raise SimulatorError(f"Open3D cannot be loaded: {error}; on Debian: apt install libegl1 libgl1") from error

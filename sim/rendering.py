@@ -71,6 +71,7 @@ def render(
     dram: Dram | None = None,
     root: int = 0,
     lod: float = 0.0,
+    progress: Callable[[int, int], None] | None = None,
 ) -> Frame:
     """Render a frame.
 
@@ -105,6 +106,8 @@ def render(
         Level of detail: the width in pixels of the widest cell that rays stop at, below 1024; True is 1. 0: they go
         down to the leaves. The memory needs mean materials: :func:`~voxrt.octree.with_means`. Not with a light or
         mirrors.
+    progress
+        Called now and then with the rows that are done and those of all samples. The model does a sample at once.
 
     Returns
     -------
@@ -139,7 +142,7 @@ def render(
     frames = _prepare(
         shown, camera, size, lighting=lighting, samples=samples, threads=threads, config=config, root=root, lod=lod
     )
-    return join_samples(frames(engine, dram), background)
+    return join_samples(frames(engine, dram, progress), background)
 
 
 def check(
@@ -155,6 +158,7 @@ def check(
     dram: Dram | None = None,
     root: int = 0,
     lod: float = 0.0,
+    progress: Callable[[int, int], None] | None = None,
 ) -> EngineCheck:
     """Render with both engines and compare every sample of every pixel.
 
@@ -162,6 +166,8 @@ def check(
     ----------
     rom, camera, size, lighting, samples, background, threads, config, dram, root, lod
         As for :func:`render`.
+    progress
+        As for :func:`render`: the rows of the ray tracer, since the model takes no time beside it.
 
     Returns
     -------
@@ -186,7 +192,7 @@ def check(
     frames = _prepare(
         shown, camera, size, lighting=lighting, samples=samples, threads=threads, config=config, root=root, lod=lod
     )
-    rtl, model = frames("rtl", dram), frames("model", None)
+    rtl, model = frames("rtl", dram, progress), frames("model", None, None)
     wrong = np.any([_apart(hardware, exact) for hardware, exact in zip(rtl, model, strict=True)], axis=0)
     return EngineCheck(rtl=join_samples(rtl, background), model=join_samples(model, background), wrong=wrong)
 
@@ -202,7 +208,7 @@ def _prepare(
     config: str,
     root: int,
     lod: float,
-) -> Callable[[Engine, Dram | None], list[Frame]]:
+) -> Callable[[Engine, Dram | None, Callable[[int, int], None] | None], list[Frame]]:
     """Check what both engines are asked; return what renders the samples of a frame by one of them."""
     width, height = whole_array("size", size, (2,), np.int64, low=1, high=_FRAME_LIMIT).tolist()
     size = width, height
@@ -216,13 +222,23 @@ def _prepare(
     root = whole("root", root, 0, len(rom.octree.words) - 1)
     lod = _checked_lod(rom, lighting, lod)
 
-    def frames(engine: Engine, dram: Dram | None) -> list[Frame]:
+    def frames(engine: Engine, dram: Dram | None, progress: Callable[[int, int], None] | None) -> list[Frame]:
+        def report(rows: int) -> None:
+            if progress is not None:
+                progress(len(done) * height + rows, len(cameras) * height)
+
+        done: list[Frame] = []
         if engine == "model":
             alone = replace(rom, octree=frame_octree(rom.octree, root))
             draw = partial(_render_model, alone, threads=whole("threads", threads, 0, 1024))
         else:
-            draw = partial(render_hardware, rom, config=text("config", config), dram=dram, root=root, lod=lod)
-        return [draw(one, size, lighting, scale=lod_scale(one, lod) if lod else 0) for one in cameras]
+            draw = partial(
+                render_hardware, rom, config=text("config", config), dram=dram, root=root, lod=lod, progress=report
+            )
+        for one in cameras:
+            done.append(draw(one, size, lighting, scale=lod_scale(one, lod) if lod else 0))
+            report(0)
+        return done
 
     return frames
 

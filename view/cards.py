@@ -164,7 +164,7 @@ def _frame_html(frame: Frame) -> str:
         if count is not None:
             rows.append((name, f"{count:,}, {count / frame.cost.rays:.2f} per {unit}"))
     rows.append(("seconds", f"{frame.cost.seconds:.3f}"))
-    return card(rows, encode_png(frame.colour))
+    return card(rows, frame._repr_png_())
 
 
 def register_card(kind: type, html_of: Callable[[Any], str], png_of: Callable[[Any], bytes] | None = None) -> None:
@@ -178,4 +178,4 @@ register_card(Octree, _octree_html, _octree_png)
 register_card(Rom, _rom_html, lambda rom: rom_png(rom, "material"))
 register_card(Scene, _scene_html)
 register_card(RayPath, _path_html)
-register_card(Frame, _frame_html, lambda frame: encode_png(frame.colour))
+register_card(Frame, _frame_html)

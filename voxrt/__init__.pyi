@@ -16,6 +16,7 @@ from voxrt.errors import ToolError as ToolError
 from voxrt.export import read_any as read_any
 from voxrt.export import read_rom as read_rom
 from voxrt.export import rom_info as rom_info
+from voxrt.export.outputs import OutputError as OutputError
 from voxrt.octree import BOARDS as BOARDS
 from voxrt.octree import Octree as Octree
 from voxrt.octree import Region as Region
@@ -27,7 +28,6 @@ from voxrt.octree.camera import Camera as Camera
 from voxrt.octree.camera import Lighting as Lighting
 from voxrt.options.build_options import BuildOptions as BuildOptions
 from voxrt.options.render_options import RenderOptions as RenderOptions
-from voxrt.outputs import OutputError as OutputError
 from voxrt.sim import Frame as Frame
 from voxrt.sim import NoSuchConfigurationError as NoSuchConfigurationError
 from voxrt.sim import RayHits as RayHits

@@ -39,4 +39,5 @@ def exports_of(package: str) -> tuple[Callable[[str], object], Callable[[], list
         home = homes[name]
         return import_module(f"{home}.{name}") if home == package else getattr(import_module(home), name)
 
-    return get_name, lambda: sorted({*vars(module), *read_homes()})
+    version = ["__version__"] if "__version__" in vars(module) else []
+    return get_name, lambda: sorted([*read_homes(), *version])

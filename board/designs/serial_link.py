@@ -153,7 +153,7 @@ def open_serial(path: str) -> SerialLink:
     try:
         serial: Any = import_module("serial")
     except ImportError as error:
-        raise DeviceError("serial lines need pyserial: pip install 'voxrt-build[fpga]'") from error
+        raise DeviceError("serial lines need pyserial: pip install pyserial") from error
     try:
         port = serial.Serial(path, BAUD, timeout=QUIET_SECONDS, write_timeout=1.0, exclusive=True)
     except (OSError, ValueError) as error:

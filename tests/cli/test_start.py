@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from voxrt import cli
+
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 LIBRARIES = {"numpy", "msgspec", "PIL", "trimesh", "pxr", "pyvista", "websockets", "asyncio", "concurrent", "http"}
@@ -27,6 +29,18 @@ OTHER_WORK = {
     "voxrt.view",
     "voxrt.voxelize.formats.usd",
 }
+
+
+def test_a_package_of_another_project_is_told(tmp_path):
+    other = tmp_path / "voxrt"
+    other.mkdir()
+    (other / "__init__.py").write_text('__version__ = "9.9"\n')
+    (other / "cli").symlink_to(Path(cli.__file__).parent)
+    code = "import sys; from voxrt.cli import main; sys.argv = ['voxrt', '--version']; main()"
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, check=False, capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr.startswith(f"voxrt: error: the package voxrt in {other} is that of another project")
+    assert done.stderr.count("\n") == 1
 
 
 @pytest.mark.parametrize(

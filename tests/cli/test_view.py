@@ -18,12 +18,12 @@ SMALL = ("--size", "96x72")
 
 @pytest.fixture
 def pyvista():
-    return pytest.importorskip("pyvista", reason="the extra voxrt-build[view] is not installed")
+    return pytest.importorskip("pyvista", reason="PyVista is not installed")
 
 
 @pytest.fixture
 def _canvas():
-    pytest.importorskip("pyvista", reason="the extra voxrt-build[view] is not installed")
+    pytest.importorskip("pyvista", reason="PyVista is not installed")
     try:
         check_screen(off_screen=True)
     except ViewerError as problem:
@@ -145,4 +145,4 @@ def test_files_that_need_no_pyvista(voxrt, built, monkeypatch, suffix):
 @pytest.mark.parametrize("wanted", [("--screenshot", "o.png"), ("-o", "o.vtu"), ("--turntable", "o.gif")])
 def test_without_pyvista(voxrt, monkeypatch, wanted):
     monkeypatch.setitem(sys.modules, "pyvista", None)
-    voxrt.fails(5, "pip install 'voxrt-build[view]'", "view", "house.obj", "--depth", "4", *wanted)
+    voxrt.fails(5, "pip install pyvista", "view", "house.obj", "--depth", "4", *wanted)

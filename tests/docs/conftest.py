@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from fakes.commands import built, folder, process, voxrt  # noqa: F401
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 from dataclasses import MISSING
+from pathlib import Path
 
 import pytest
 
-from voxrt.cli.line.command_line import command_options, flags_of
+from voxrt.cli.line.command_line import command_options, flags_of, read_options
 from voxrt.cli.line.completion_script import completion_script
-from voxrt.cli.line.help_text import command_help
+from voxrt.cli.line.help_text import command_help, label, option_text, task_help
 from voxrt.options.build_options import BuildOptions
 from voxrt.options.commands import COMMANDS
 from voxrt.options.option import options_of
 from voxrt.options.render_options import RenderOptions
+from voxrt.options.tasks import TASKS
+
+README = Path(__file__).resolve().parents[2] / "README.md"
 
 OPTIONS = [
     pytest.param(command, name, option, id=f"{command} {name}")
@@ -72,6 +77,8 @@ def test_the_docstring_describes_every_option(table):
         (["voxrt", "build", "a.obj", "--fill", "s"], {"solid", "surface"}),
         (["voxrt", "render", "--lod-"], {"--lod-cell"}),
         (["voxrt", "completion", ""], {"--help", "-h", "bash", "zsh", "fish"}),
+        (["voxrt-build", "a.obj", "--fill", "s"], {"solid", "surface"}),
+        (["voxrt-build", "--dep"], {"--depth"}),
     ],
 )
 def test_bash_completes(words, candidates):
@@ -79,7 +86,41 @@ def test_bash_completes(words, candidates):
     if bash is None:
         pytest.skip("bash is not installed")
     quoted = " ".join(f"'{word}'" for word in words)
-    code = f"COMP_WORDS=({quoted}); COMP_CWORD={len(words) - 1}; _voxrt; printf '%s\\n' \"${{COMPREPLY[@]}}\""
+    function = f"_{words[0].replace('-', '_')}"
+    code = f"COMP_WORDS=({quoted}); COMP_CWORD={len(words) - 1}; {function}; printf '%s\\n' \"${{COMPREPLY[@]}}\""
     script = completion_script("bash") + code
     done = subprocess.run([bash], input=script, capture_output=True, text=True, check=True)
     assert set(done.stdout.split()) == candidates
+
+
+def test_the_manual_page_describes_every_option():
+    import make_man_page
+
+    if shutil.which("man") is None:
+        pytest.skip("man is not installed")
+    shown = subprocess.run(
+        ["man", "--warnings", "-l", "-"],
+        input=make_man_page.man_page(),
+        env={"MANWIDTH": "200", "MAN_KEEP_FORMATTING": "", "PATH": os.environ["PATH"], "LC_ALL": "C.UTF-8"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert shown.stderr == ""
+    text = " ".join(shown.stdout.split())
+    for command in COMMANDS:
+        options = command_options(command)
+        for name, option in options.items():
+            assert f"{label(name, option)} {option_text(option, options)}" in text, (command, name)
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_the_command_lines_of_a_task_are_in_the_readme_and_can_be_read(task):
+    readme = [line.split("  #")[0].strip() for line in README.read_text(encoding="utf-8").splitlines()]
+    shown = task_help(task)
+    for line, comment in TASKS[task].lines:
+        assert f"{line} " in shown
+        assert f"# {comment}\n" in shown
+        assert line in readme
+        command, *words = line.replace("voxrt-build", "voxrt build").split()[1:]
+        read_options(command, words)

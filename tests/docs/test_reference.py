@@ -10,7 +10,7 @@ import pytest
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 ENTRY = re.compile(r"^\.\. (?:auto(?:function|class)|py:data):: (\S+)$", re.MULTILINE)
-REFERENCE = re.compile(r"^- ``(\S+)``: :py:\w+:`(\S+)`$", re.MULTILINE)
+REFERENCE = re.compile(r"^- ``(\S+)``, :py:\w+:`(\S+)`: \w", re.MULTILINE)
 PAGE = re.compile(r"^- :doc:`(\S+)`$", re.MULTILINE)
 
 EXPORTING = ("voxrt", "voxrt.voxelize", "voxrt.octree", "voxrt.export", "voxrt.sim", "voxrt.view")
@@ -53,6 +53,15 @@ def test_every_page_is_in_the_manual(pages):
     listed = (DOCS / "programming.md").read_text(encoding="utf-8")
     for package in pages:
         assert f"\nreference/{package}\n" in listed, package
+
+
+def test_the_map_names_each_export_once(monkeypatch):
+    import make_reference
+
+    for wrong in (("build", "render"), ("buildd",), ()):
+        monkeypatch.setitem(make_reference.TASKS, "Build a memory", wrong)
+        with pytest.raises(ValueError, match=r"TASKS must name each export of voxrt once: .*'BuildOptions'"):
+            make_reference.pages()
 
 
 def test_constants_have_their_text_and_value(pages):

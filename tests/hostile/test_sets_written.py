@@ -89,7 +89,7 @@ def test_no_room_is_one_line_and_leaves_everything(folder, arguments):
 
 
 def test_no_room_for_octants_of_paraview(folder):
-    pytest.importorskip("pyvista", reason="the extra voxrt-build[view] is not installed")
+    pytest.importorskip("pyvista", reason="PyVista is not installed")
     before = names(folder)
     finished = command(folder, "view", "house.obj", "--depth", "4", "-o", "x.vtu", limit=500)
     assert (finished.returncode, "wrote" in finished.stderr) == (2, False)

@@ -190,3 +190,13 @@ def test_estimates_grow_with_the_surface():
     assert results[2].seconds > 60
     large = BuildOptions(preview=True, engine="rtl", size=(8192, 8192))
     assert estimate_build(scene, fit_grid(scene, depth=4), large).seconds > 60
+
+
+def test_the_bar_of_a_picture_counts_its_rows(monkeypatch):
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    with progress.build_bar() as bar:
+        bar.estimate(BuildEstimate(100.0, 0))
+        bar.rows(3, 10)
+        bar._progress.refresh()
+        (task,) = bar._progress.tasks
+        assert (task.completed, task.total) == (3, 10)

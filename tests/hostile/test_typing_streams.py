@@ -82,7 +82,7 @@ def test_a_locale_without_umlauts(folder):
 
 @pytest.mark.parametrize("display", ["", ":987"])
 def test_a_window_without_a_screen(folder, display):
-    pytest.importorskip("pyvista", reason="the extra voxrt-build[view] is not installed")
+    pytest.importorskip("pyvista", reason="PyVista is not installed")
     finished = shell(folder, "voxrt view house.obj --depth 3", DISPLAY=display, WAYLAND_DISPLAY="")
     assert finished.returncode == 5
     assert finished.stderr.startswith(b"voxrt: error: there is no screen to open a window on")

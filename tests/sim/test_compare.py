@@ -123,5 +123,5 @@ def test_a_memory_without_a_place_is_refused():
 def test_a_missing_open3d_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "open3d", None)
     rom = box_rom(*BOXES)
-    with pytest.raises(SimulatorError, match=r"needs Open3D.*pip install 'voxrt-build\[compare\]'"):
+    with pytest.raises(SimulatorError, match=r"needs Open3D.*pip install open3d"):
         compare(box_scene(*BOXES), rom, frame_scene(rom, SIZE), SIZE)

@@ -77,6 +77,28 @@ def test_the_published_memories_are_seen_without_a_wrong_pixel(name):
     assert len(np.unique(frame.material)) > 2 or name != "house"
 
 
+@pytest.mark.parametrize("engine", ["model", pytest.param("rtl", marks=needs_rtl)])
+def test_progress_counts_the_rows_of_all_samples(rom, engine):
+    size, calls = (160, 120), []
+    render(rom, frame_scene(rom, size), size, engine=engine, samples=2, progress=lambda *rows: calls.append(rows))
+    done = [rows for rows, _ in calls]
+    assert done == sorted(done)
+    assert {120, 240, 360, 480} <= set(done)
+    assert calls[-1] == (480, 480)
+    assert {total for _, total in calls} == {480}
+    if engine == "rtl":
+        assert len(done) > 4
+
+
+@needs_rtl
+def test_what_the_caller_of_progress_raises_ends_the_frame(rom):
+    def stop(done, total):
+        raise KeyError((done, total))
+
+    with pytest.raises(KeyError):
+        render(rom, frame_scene(rom, (160, 120)), (160, 120), engine="rtl", progress=stop)
+
+
 def test_an_empty_memory_frames_its_world():
     nothing = rom_of(np.array([0xFFFFFF00], np.uint32), 3)
     whole = rom_of(np.array([0xFFFFFF01], np.uint32), 3)

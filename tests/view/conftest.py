@@ -5,7 +5,7 @@ import pytest
 
 @pytest.fixture
 def _pyvista():
-    pytest.importorskip("pyvista", reason="the extra voxrt-build[view] is not installed")
+    pytest.importorskip("pyvista", reason="PyVista is not installed")
 
 
 @pytest.fixture

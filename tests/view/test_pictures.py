@@ -248,7 +248,7 @@ def test_too_many_octants(monkeypatch):
 
 def test_without_pyvista(monkeypatch):
     monkeypatch.setitem(sys.modules, "pyvista", None)
-    with pytest.raises(view.ViewerError, match=r"pip install 'voxrt-build\[view\]'"):
+    with pytest.raises(view.ViewerError, match=r"pip install pyvista"):
         view.octants(rom_of(three_towers()))
 
 

@@ -151,13 +151,16 @@ def load_step(path: str | Path, *, opaque_from: float = OPAQUE_FROM) -> Scene:
     return replace(scene, name=asset_name(path), objects=objects)
 
 
+_DISTRIBUTIONS = {"collada": "pycollada"}  # of modules, where the name is another
+
+
 def _need(path: Path, *modules: str) -> None:
     for module in modules:
         try:
             import_module(module)
         except ImportError:
-            fix = "install it: pip install 'voxrt-build[cad]'"
-            raise AssetError(path, f"takes the extra cad, of which {module} is missing", fix=fix) from None
+            fix = f"pip install {_DISTRIBUTIONS.get(module, module)}"
+            raise AssetError(path, f"takes {module}, which is not installed", fix=fix) from None
 
 
 def _metres(path: Path, text: str) -> float:

@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from voxrt.octree.camera import Camera, Lighting
 
 _CACHED = 2  # rtl/voxrt_pkg.sv
-_INSTALL = "pip install 'voxrt-build[fpga]'"
 
 
 class Memory(msgspec.Struct, frozen=True):
@@ -200,4 +199,6 @@ def _placed(name: str, design: BaseDesign, config: str) -> PlacedBoard:
 
 def _need(package: str, program: str) -> None:
     if find_spec(package) is None:
-        raise ToolError(f"bitstreams are made by {program}, which is not installed: {_INSTALL}")
+        raise ToolError(
+            f"bitstreams are made by {program}, which is not installed: pip install {package.replace('_', '-')}"
+        )

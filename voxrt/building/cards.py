@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from voxrt.building.result import BuildResult
-from voxrt.sim.image import encode_png
-from voxrt.view.cards import card, octree_rows, register_card, rom_png
+from voxrt.view.cards import card, octree_rows, register_card
 from voxrt.views.pictures import Picture
 
 if TYPE_CHECKING:
@@ -24,20 +23,14 @@ def _build_html(result: BuildResult) -> str:
         ("seconds", f"{sum(result.seconds.values()):.2f}"),
         *((kind, str(path)) for kind, path in result.outputs.items()),
     ]
-    return card(rows, _build_png(result))
-
-
-def _build_png(result: BuildResult) -> bytes:
-    if result.preview is not None:
-        return encode_png(result.preview.frame.colour)
-    return rom_png(result.rom, "material")
+    return card(rows, result._repr_png_())
 
 
 def _picture_html(picture: Picture) -> str:
     frame: Frame = picture.frame
     height, width = frame.material.shape
-    return card([("picture", f"{width}x{height} pixels, by {picture.engine}")], encode_png(frame.colour))
+    return card([("picture", f"{width}x{height} pixels, by {picture.engine}")], picture._repr_png_())
 
 
-register_card(BuildResult, _build_html, _build_png)
-register_card(Picture, _picture_html, lambda picture: encode_png(picture.frame.colour))
+register_card(BuildResult, _build_html)
+register_card(Picture, _picture_html)

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from voxrt.export import WORD_SUFFIXES
+from voxrt.export.outputs import OutputError, check_file, check_folder
 from voxrt.octree import RomError
-from voxrt.outputs import OutputError, check_file, check_folder
 from voxrt.voxelize.formats.external_files import as_text
-
-if TYPE_CHECKING:
-    import os
-
 
 _FILE = re.compile(r"\.[A-Za-z]\w{0,4}")
 """Suffixes by which a name means a file."""
@@ -40,10 +36,13 @@ def output_files(
 ) -> OutputFiles:
     """Return the files of a build, which can be written. `file_name`: that of the asset; None for one in memory.
 
+    TypeError if `output` is no path.
     OutputError if a folder cannot be written to, or has a memory that was built from another asset of the same stem.
     """
     words, named = None, False
     if output is not None:
+        if not isinstance(output, str | os.PathLike):
+            raise TypeError(f"output must be the path of a folder or of a file, not {type(output).__name__}")
         path = Path(output)
         named = path.suffix.lower() in WORD_SUFFIXES and not path.is_dir()
         if named:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from voxrt import export, octree
+from voxrt.options.shared import PREVIEW_SIZE
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    import os
 
     import numpy as np
     from numpy.typing import NDArray
@@ -23,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, slots=True, repr=False)
 class BuildResult:
-    """What a build made.
+    """What a build made. A notebook shows its picture.
 
     Attributes
     ----------
@@ -68,6 +70,7 @@ class BuildResult:
     (2504, 3)
     >>> built.to_dense().shape
     (16, 16, 16)
+    >>> built.save("house.png")
     """
 
     rom: Rom
@@ -94,6 +97,42 @@ class BuildResult:
             f"<BuildResult {self.rom.name!r}: {frames}depth {self.octree.depth}, {words:,} words, "
             f"{self.solid_voxels:,} solid voxels, {count} {'material' if count == 1 else 'materials'}{files}>"
         )
+
+    def _repr_png_(self) -> bytes:
+        return self.picture._repr_png_()
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the picture, as a PNG file, or the memory, in the form that the suffix of the file asks for.
+
+        Parameters
+        ----------
+        path
+            The file: ``.png``, or a suffix of :data:`voxrt.WRITABLE_SUFFIXES`, as :func:`voxrt.convert` takes it.
+
+        Raises
+        ------
+        RomError
+            The suffix is another.
+        OutputError
+            The file cannot be written.
+        """
+        from voxrt.views.writers import convert  # noqa: PLC0415 - slow to import
+
+        if Path(path).suffix.lower() == ".png":
+            self.picture.save(path)
+        else:
+            convert(self.blob, path)
+
+    def show(self) -> None:
+        """Show the picture as :meth:`Frame.show` does."""
+        self.picture.show()
+
+    @property
+    def picture(self) -> Picture:
+        """The preview; without one, a picture that the model renders for this call."""
+        from voxrt.views.pictures import animation_camera, preview  # noqa: PLC0415 - as above
+
+        return self.preview or preview(self.blob, animation_camera(self.blob, PREVIEW_SIZE))
 
     @property
     def blob(self) -> Blob:

@@ -7,18 +7,17 @@ from typing import TYPE_CHECKING
 
 from voxrt import sim
 from voxrt.octree.camera import PLAIN_LIGHTING
-from voxrt.options.notations import BACKGROUNDS
 from voxrt.options.shared import PREVIEW_SIZE
 from voxrt.views.viewpoint import ViewpointError, aim_camera, authored_camera, authored_lighting, stands_inside
-from voxrt.voxelize import EMPTY, SceneWarning
+from voxrt.voxelize import SceneWarning
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from voxrt.building.result import BuildResult
     from voxrt.octree.camera import Camera
     from voxrt.options.build_options import BuildOptions
     from voxrt.views.pictures import Picture
-
-_SAMPLES = 4  # rays per pixel on each axis
 
 
 def with_view(result: BuildResult, options: BuildOptions) -> BuildResult:
@@ -58,41 +57,38 @@ def preview(result: BuildResult, options: BuildOptions) -> Picture:
     SimulatorError if the engine cannot hold the memory, the camera or the light; ViewpointError if there is no camera
     for a picture of this size.
     """
-    from voxrt.views.pictures import Picture, render  # noqa: PLC0415 - most builds make no picture
+    from voxrt.views import pictures  # noqa: PLC0415 - most builds make no picture
 
-    camera = _camera(result, options.size)
-    frame = render(
-        result.rom,
-        camera,
-        size=options.size,
+    return pictures.preview(
+        result.blob,
+        _camera(result, options.size),
+        options.size,
         engine=options.engine,
-        config=_config(result),
-        lighting=result.lighting,
-        samples=options.samples or (1 if options.engine == "rtl" else _SAMPLES),
-        background=options.background or (None if _has_background(result) else BACKGROUNDS["light"]),
+        samples=options.samples,
+        background=options.background,
         threads=options.threads,
     )
-    return Picture(frame, camera, options.engine)
 
 
-def check_preview(result: BuildResult) -> sim.EngineCheck:
+def check_preview(result: BuildResult, progress: Callable[[int, int], None] | None = None) -> sim.EngineCheck:
     """Render the view of a preview by both engines, one ray per pixel, and compare them.
 
-    SimulatorError if the simulated hardware is missing, or cannot hold the memory, the camera or the light.
+    `progress` is called with the rows that are done and with all rows. SimulatorError if the simulated hardware is
+    missing, or cannot hold the memory, the camera or the light.
     """
     assert result.preview is not None
+    from voxrt.views.pictures import config_of  # noqa: PLC0415 - as above
+
     height, width = result.preview.frame.material.shape
     lighting = PLAIN_LIGHTING if result.lighting is None else result.lighting
-    return sim.check(result.rom, result.preview.camera, (width, height), lighting=lighting, config=_config(result))
-
-
-def _config(result: BuildResult) -> str:
-    return "lit" if result.lighting is not None and result.lighting.features else "tiny"
-
-
-def _has_background(result: BuildResult) -> bool:
-    """Tell whether the author chose the background."""
-    return result.rom.materials[0].colour != EMPTY.colour
+    return sim.check(
+        result.rom,
+        result.preview.camera,
+        (width, height),
+        lighting=lighting,
+        config=config_of(result.lighting),
+        progress=progress,
+    )
 
 
 def _camera(result: BuildResult, size: tuple[int, int]) -> Camera:

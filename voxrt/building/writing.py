@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 from voxrt.building.view import preview
 from voxrt.export.atomic import write_together
+from voxrt.export.outputs import writing
 from voxrt.export.rom_files import write_words
 from voxrt.options.build_options import BuildOptions
 from voxrt.options.option import options_of
-from voxrt.outputs import writing
 from voxrt.sim import SimulatorError
 from voxrt.views.viewpoint import ViewpointError
 
@@ -69,9 +69,7 @@ def _write(files: OutputFiles, result: BuildResult, dialect: str) -> dict[str, P
     if files.preview is not None:
         pictures[files.preview] = None
         if result.preview is not None:
-            from voxrt.sim.image import encode_png  # noqa: PLC0415 - most builds make no picture
-
-            pictures[files.preview] = encode_png(result.preview.frame.colour)
+            pictures[files.preview] = result.preview._repr_png_()
     outputs: dict[str, Path] = {}
     with ExitStack() as stack:
         for path in (*pictures, files.words):

@@ -23,6 +23,8 @@ _INTERRUPTED = 128 + signal.SIGINT
 
 def start(arguments: Sequence[str]) -> NoReturn:
     """Run a command line and exit."""
+    if "voxrt.exports" not in sys.modules:
+        _refuse_other_package()
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
         signal.signal(signal.SIGINT, _leave)
     gc.disable()  # until the command is imported: imports make many objects and leave none
@@ -50,6 +52,15 @@ def _print_version() -> None:
     except OSError:  # what runs commands says why
         return
     sys.exit(0)
+
+
+def _refuse_other_package() -> NoReturn:
+    """Exit with an error: another project's package of the name has replaced ours, all but the commands."""
+    place = os.path.dirname(sys.modules["voxrt"].__file__ or "")  # noqa: PTH120 - pathlib is slow to import
+    sys.exit(
+        f"voxrt: error: the package voxrt in {place} is that of another project, which PyPI has under this name; "
+        "remove both (pip uninstall voxrt voxrt-build) and install voxrt-build from its checkout"
+    )
 
 
 def _leave(_number: int, _frame: FrameType | None) -> NoReturn:

@@ -94,7 +94,7 @@ COMMANDS = {
         "voxrt diff before.mem after.mem",
     ),
     "help": Command(
-        "Print the help of a command with all of its options, or that of all commands.",
+        "Print the help of a command with all of its options, the command lines of a task, or all commands.",
         "shell_commands:HelpCommand",
         "voxrt help build",
     ),

@@ -7,6 +7,7 @@ from dataclasses import MISSING, dataclass
 from voxrt.options.commands import COMMANDS
 from voxrt.options.kinds import Kind, as_it_is, one_of
 from voxrt.options.option import ARGUMENTS, option
+from voxrt.options.tasks import TASKS
 
 
 # A table: an option is its kind, its default and its group, then its text.
@@ -22,5 +23,5 @@ class CompletionCommand:
 class HelpCommand:
     """What ``voxrt help`` takes."""
 
-    command: str | None = option(Kind("COMMAND", str, as_it_is, choices=tuple(COMMANDS)), None, ARGUMENTS,
-        "The command.")
+    topic: str | None = option(Kind("COMMAND|TASK", str, as_it_is, choices=(*COMMANDS, *TASKS)), None, ARGUMENTS,
+        f"The command, or a task: {', '.join(TASKS)}.")

@@ -105,9 +105,7 @@ def connected(scheduler: str, remedy: str) -> Iterator[DaskWorkers]:
         from distributed import Client  # noqa: PLC0415 - the extra `cluster`
         from distributed.comm.core import CommClosedError  # noqa: PLC0415
     except ImportError as error:
-        raise ToolError(
-            f"building on a cluster needs dask.distributed ({error}): pip install 'voxrt-build[cluster]'"
-        ) from None
+        raise ToolError(f"building on a cluster needs dask.distributed ({error}): pip install distributed") from None
     for name in ("distributed", "tornado", "asyncio", *logging.root.manager.loggerDict):
         if name.partition(".")[0] in {"distributed", "tornado", "asyncio"}:  # Dask gives some a level of their own
             logging.getLogger(name).setLevel(logging.CRITICAL)  # what goes wrong is said in one line, here

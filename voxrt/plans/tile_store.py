@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 
 from voxrt.export.atomic import write_atomically
+from voxrt.export.outputs import OutputError
 from voxrt.octree import Assembly, DiskAssembly, Octree
-from voxrt.outputs import OutputError
 from voxrt.voxelize import AssetError, DoesNotFitError
 
 try:

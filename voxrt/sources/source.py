@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias, Union
+from typing import TYPE_CHECKING, TypeAlias, Union, cast
 
 from voxrt import voxelize
 from voxrt.sources.object_selection import named_camera, without_objects
@@ -50,7 +50,7 @@ class Source:
     def load(self) -> Scene:
         """Load the scene, without the objects that the options ignore and with those joined that are filled together.
 
-        TypeError or ValueError if the asset is nothing that can be built; AssetError if the file cannot be read or
+        TypeError or ValueError if arrays are not those of a mesh; AssetError if the file cannot be read or
         honoured; DoesNotFitError for more than 255 materials.
         """
         options = self.options
@@ -96,13 +96,9 @@ class Source:
             scene, unused = value, unused | {"up": options.up, "unit": options.unit}
         elif is_trimesh(value):
             scene = trimesh_scene(value, name=self.name, up=options.up, unit=options.unit)
-        elif isinstance(value, tuple) and len(value) == 2:
-            scene = mesh_scene(*value, up=options.up, unit=options.unit)
         else:
-            raise TypeError(
-                "asset must be a file's path, a Scene, (vertices, faces), a trimesh.Trimesh or a trimesh.Scene, "
-                f"not {type(value).__name__}"
-            )
+            vertices, faces = cast("tuple[ArrayLike, ArrayLike]", value)
+            scene = mesh_scene(vertices, faces, up=options.up, unit=options.unit)
         ignored = tuple(
             SceneWarning("ignored-option", f"{name} was ignored: it is for files that have it")
             for name, option in unused.items()
@@ -112,7 +108,7 @@ class Source:
 
 
 def open_source(asset: Asset, options: BuildOptions) -> Source:
-    """Open an asset. Nothing is read before :meth:`Source.load`, which refuses what is no asset."""
+    """Open an asset; TypeError if it is none. Nothing is read before :meth:`Source.load`."""
     if isinstance(asset, str | os.PathLike):
         return Source(options, asset_name(Path(asset)), os.fspath(asset), file=Path(asset))
     name = "mesh"
@@ -123,4 +119,9 @@ def open_source(asset: Asset, options: BuildOptions) -> Source:
 
         if is_trimesh(asset):
             name = as_text(Path(str(asset.metadata.get("name") or asset.metadata.get("file_name") or name)).stem)
+        elif not (isinstance(asset, tuple) and len(asset) == 2):
+            raise TypeError(
+                "asset must be a file's path, a Scene, a mesh or a scene of trimesh, or a tuple (vertices, faces), "
+                f"not {type(asset).__name__}; for arrays: build((vertices, faces)), or voxelize_mesh(vertices, faces)"
+            )
     return Source(options, name, name, value=asset)

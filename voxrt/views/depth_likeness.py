@@ -107,7 +107,7 @@ def draw_likeness_curve(curve: tuple[LikenessAtDepth, ...]) -> NDArray[np.uint8]
         from matplotlib.figure import Figure  # noqa: PLC0415 - slow to load, optional
     except ImportError as error:
         raise sim.SimulatorError(
-            "drawing a curve needs matplotlib, which is not installed; pip install 'voxrt-build[compare]'"
+            "drawing a curve needs matplotlib, which is not installed; pip install matplotlib"
         ) from error
     figure = Figure(figsize=(9, 6), dpi=100, layout="constrained")
     places = figure.subplots(2, 2, sharey="row")

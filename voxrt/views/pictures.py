@@ -1,4 +1,4 @@
-"""Pictures of memories: rendered, and saved as PNG files."""
+"""Pictures of memories: rendered, shown and saved."""
 
 from __future__ import annotations
 
@@ -10,29 +10,34 @@ import numpy as np
 
 from voxrt import sim
 from voxrt.export import Blob
+from voxrt.export.outputs import check_file, writing
 from voxrt.octree import Rom
 from voxrt.octree.camera import refit
+from voxrt.options.notations import BACKGROUNDS
 from voxrt.options.option import merge
 from voxrt.options.render_options import RenderOptions
 from voxrt.options.shared import PREVIEW_SIZE
-from voxrt.outputs import check_file, writing
+from voxrt.sim.image import save_png
 from voxrt.views.viewpoint import aim_camera
+from voxrt.voxelize import EMPTY
 from voxrt.voxelize.arguments import instance, whole_array
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
 
     from numpy.typing import ArrayLike
 
-    from voxrt.octree.camera import Camera
+    from voxrt.octree.camera import Camera, Lighting
     from voxrt.options.keywords import RenderKeywords
-    from voxrt.sim import Engine, Frame
+    from voxrt.sim import Background, Engine, Frame
+
+_SAMPLES = 4  # rays per pixel of a preview, on each axis
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, eq=False, slots=True, repr=False)
 class Picture:
-    """A frame, the camera that saw it and the engine that rendered it.
+    """A frame, the camera that saw it and the engine that rendered it. A notebook shows it.
 
     Attributes
     ----------
@@ -49,17 +54,36 @@ class Picture:
     >>> built = voxrt.build("examples/house.obj", depth=4)
     >>> camera = voxrt.aim_camera(built.rom, (64, 48))
     >>> frame = voxrt.render(built.rom, camera, size=(64, 48))
-    >>> voxrt.Picture(frame, camera, "model").frame.colour.shape
-    (48, 64, 3)
+    >>> voxrt.Picture(frame, camera, "model")
+    <Picture: 64x48 pixels, 5 materials, by model>
     """
 
     frame: Frame
     camera: Camera
     engine: Engine
 
+    def __repr__(self) -> str:
+        return f"<Picture{repr(self.frame)[len('<Frame') : -1]}, by {self.engine}>"
+
+    def _repr_png_(self) -> bytes:
+        return self.frame._repr_png_()
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the picture as :meth:`Frame.save` does."""
+        self.frame.save(path)
+
+    def show(self) -> None:
+        """Show the picture as :meth:`Frame.show` does."""
+        self.frame.show()
+
 
 def render(
-    rom: Rom, camera: Camera | None = None, options: RenderOptions | None = None, **keywords: Unpack[RenderKeywords]
+    rom: Rom,
+    camera: Camera | None = None,
+    options: RenderOptions | None = None,
+    *,
+    progress: Callable[[int, int], None] | None = None,
+    **keywords: Unpack[RenderKeywords],
 ) -> Frame:
     """Render a picture of a memory.
 
@@ -71,6 +95,8 @@ def render(
         The camera. None shows the whole scene from the front right and above.
     options
         How to render; None for the defaults.
+    progress
+        Called now and then with the rows that are done and those of all samples.
     **keywords
         The options of :class:`RenderOptions` by name, such as `size` and `engine`. They take precedence over `options`.
 
@@ -98,8 +124,59 @@ def render(
     rom = instance("rom", rom, Rom)
     options = merge("render", RenderOptions, options, keywords)
     return sim.render(
-        rom, camera or aim_camera(rom, options.size), engine=options.chosen_engine, **options.for_engines()
+        rom,
+        camera or aim_camera(rom, options.size),
+        engine=options.chosen_engine,
+        progress=progress,
+        **options.for_engines(),
     )
+
+
+def preview(
+    blob: Blob,
+    camera: Camera,
+    size: tuple[int, int] = PREVIEW_SIZE,
+    *,
+    engine: Engine = "model",
+    samples: int | None = None,
+    background: Background | str | None = None,
+    threads: int = 0,
+) -> Picture:
+    """Render a memory as it is best seen: lit as its author says, smooth if the model does it, on a light background.
+
+    SimulatorError if the engine cannot hold the memory, the camera or the light.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> blob = voxrt.build("examples/house.obj", depth=4).blob
+    >>> preview(blob, voxrt.animation_camera(blob, (64, 48)), (64, 48))
+    <Picture: 64x48 pixels, 5 materials, by model>
+    """
+    has_background = blob.rom.materials[0].colour != EMPTY.colour
+    frame = render(
+        blob.rom,
+        camera,
+        size=size,
+        engine=engine,
+        config=config_of(blob.lighting),
+        lighting=blob.lighting,
+        samples=samples or (1 if engine == "rtl" else _SAMPLES),
+        background=background or (None if has_background else BACKGROUNDS["light"]),
+        threads=threads,
+    )
+    return Picture(frame, camera, engine)
+
+
+def config_of(lighting: Lighting | None) -> str:
+    """Return the smallest configuration of the hardware that has such a light.
+
+    Examples
+    --------
+    >>> config_of(None)
+    'tiny'
+    """
+    return "lit" if lighting is not None and lighting.features else "tiny"
 
 
 def animation_camera(blob: Blob, size: tuple[int, int]) -> Camera:
@@ -163,13 +240,13 @@ def save_animation(pictures: Iterable[ArrayLike], path: str | os.PathLike[str], 
         write_animation(path, arrays, period)
 
 
-def save_picture(colour: ArrayLike, path: str | os.PathLike[str]) -> None:
+def save_picture(picture: Frame | Picture | ArrayLike, path: str | os.PathLike[str]) -> None:
     """Write a picture as a PNG file. An interruption leaves the old file or the new one.
 
     Parameters
     ----------
-    colour
-        uint8, shape (H, W, 3), sRGB, or (H, W, 4) with the opacity.
+    picture
+        A frame, a picture, or an array: uint8, shape (H, W, 3), sRGB, or (H, W, 4) with the opacity.
     path
         The file. Its folder is made if it is missing.
 
@@ -178,16 +255,15 @@ def save_picture(colour: ArrayLike, path: str | os.PathLike[str]) -> None:
     OutputError
         The file cannot be written.
     TypeError, ValueError
-        The array is no picture.
+        It is no picture.
 
     Examples
     --------
     >>> import numpy as np, voxrt
     >>> voxrt.save_picture(np.zeros((48, 64, 3), np.uint8), "black.png")
     """
-    channels = 4 if np.shape(colour)[-1:] == (4,) else 3
-    pixels = whole_array("colour", colour, ("H", "W", channels), np.uint8, low=0, high=255)
-    path = Path(path)
-    check_file(path)
-    with writing(path):
-        sim.write_png(path, pixels)
+    if isinstance(picture, sim.Frame | Picture):
+        picture.save(path)
+        return
+    channels = 4 if np.shape(picture)[-1:] == (4,) else 3
+    save_png(path, whole_array("picture", picture, ("H", "W", channels), np.uint8, low=0, high=255))

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from voxrt import export
 from voxrt.export import Blob, write_npz, write_vox
+from voxrt.export.outputs import check_folder, writing
 from voxrt.octree import Rom, RomError
-from voxrt.outputs import check_folder, writing
 from voxrt.view import Pane
 from voxrt.view.octant_files import write_glb, write_octants, write_ply
 from voxrt.view.octant_page import write_page

@@ -58,6 +58,7 @@ struct FrameImage {
     uint8_t* colour;
     uint8_t* material;
     uint8_t* face;
+    std::size_t* done = nullptr; // pixels so far, whenever poll is called
 };
 
 struct FrameCost {

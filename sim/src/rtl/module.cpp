@@ -16,7 +16,7 @@
 //     .read_back(count)       uint32: the memory's first words, read through that port
 //     .render(camera, width, height, depth, materials, *, flat=False, brightness=None, light=None, ambient=0,
 //             bounces=0, mirrors=None, lod_scale=0, root=0, stall_seed=0, latency=50, interval=3, jitter=0,
-//             dram_seed=0) -> dict
+//             dram_seed=0, progress=None) -> dict
 //                             camera int32 (4, 3): position (1/16 voxel), look, right, up (signed 16 bit each);
 //                             width, height 1 ... 4095; depth 1 ... max_depth, the levels below the root;
 //                             materials uint8 (256, 3), sRGB, row 0 is the background; brightness None, by the
@@ -29,7 +29,8 @@
 //                             material and face uint8 (H, W), cycles (from the start to the last pixel accepted),
 //                             words_read, and the frame's errors: "direction overflow", "bad pointer", "step limit",
 //                             "bus error", "bus timeout"; of a cached memory also word_requests, line_requests and
-//                             lines_read (voxrt_pkg.sv: counters_t), else 0. Releases the GIL; Ctrl-C ends it.
+//                             lines_read (voxrt_pkg.sv: counters_t), else 0. progress is called with the rows done, now
+//                             and then. Releases the GIL; Ctrl-C ends it.
 //
 //   CORES, Core     the whole core: core_module.cpp
 //
@@ -151,7 +152,8 @@ public:
     nb::dict render(const CameraRegisters& camera, long width, long height, long depth, const Materials& materials,
                     bool flat, const std::optional<Faces>& brightness, const std::optional<Place>& light, long ambient,
                     long bounces, const std::optional<Flags>& mirrors, long lod_scale, uint32_t root,
-                    uint32_t stall_seed, long latency, long interval, long jitter, uint32_t dram_seed) {
+                    uint32_t stall_seed, long latency, long interval, long jitter, uint32_t dram_seed,
+                    const std::optional<nb::callable>& progress) {
         const Limits& limits = design_->limits();
         check("width", width, 1, (1 << size_bits) - 1);
         check("height", height, 1, (1 << size_bits) - 1);
@@ -205,7 +207,14 @@ public:
         {
             OneCall call(busy_);
             nb::gil_scoped_release released;
-            cost = design_->render(request, {colour.data(), material.data(), face.data()}, check_signals);
+            std::size_t done = 0;
+            cost = design_->render(request, {colour.data(), material.data(), face.data(), &done}, [&] {
+                check_signals();
+                if (progress) {
+                    nb::gil_scoped_acquire acquired;
+                    (*progress)(done / columns);
+                }
+            });
         }
         nb::dict result;
         result["colour"] = python::to_numpy(std::move(colour), {rows, columns, 3});
@@ -264,6 +273,6 @@ NB_MODULE(_rtl, m) {
         .def("render", &Tracer::render, "camera"_a, "width"_a, "height"_a, "depth"_a, "materials"_a, nb::kw_only(),
              "flat"_a = false, "brightness"_a.none() = nb::none(), "light"_a.none() = nb::none(), "ambient"_a = 0,
              "bounces"_a = 0, "mirrors"_a.none() = nb::none(), "lod_scale"_a = 0, "root"_a = 0, "stall_seed"_a = 0,
-             "latency"_a = 50, "interval"_a = 3, "jitter"_a = 0, "dram_seed"_a = 0);
+             "latency"_a = 50, "interval"_a = 3, "jitter"_a = 0, "dram_seed"_a = 0, "progress"_a.none() = nb::none());
     voxrt::rtl::bind_core(m);
 }

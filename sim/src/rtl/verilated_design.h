@@ -122,8 +122,11 @@ public:
                 ++done;
             }
             clock();
-            if (clocks % poll_interval == 0)
+            if (clocks % poll_interval == 0) {
+                if (image.done)
+                    *image.done = done;
                 poll();
+            }
         }
         if (model_->busy_o)
             throw std::logic_error("busy after the last pixel");

@@ -65,14 +65,13 @@ def load_las(path: str | Path, *, unit: float | None = None, points: int | None 
     Raises
     ------
     AssetError
-        The file cannot be read, has no points, or the extra ``scan`` is not installed.
+        The file cannot be read, has no points, or laspy is not installed.
     """
     path = Path(path)
     try:
         laspy = import_module("laspy")
     except ImportError:
-        fix = "install it: pip install 'voxrt-build[scan]'"
-        raise AssetError(path, "takes the extra scan, of which laspy is missing", fix=fix) from None
+        raise AssetError(path, "takes laspy, which is not installed", fix="pip install laspy lazrs") from None
     data = read_asset(path)
     if not _is_whole(data):
         raise AssetError(path, "is no LAS file, or ends before its records do", fix=_AGAIN)
@@ -112,8 +111,7 @@ def _unpacked(path: Path, data: bytes) -> bytes:
         except subprocess.TimeoutExpired:
             raise AssetError(path, f"takes more than {_SECONDS} seconds to unpack", fix=_AGAIN) from None
         if b"No module" in done.stderr or b"No LazBackend" in done.stderr:
-            fix = "install it: pip install 'voxrt-build[scan]'"
-            raise AssetError(path, "takes the extra scan, of which lazrs is missing", fix=fix)
+            raise AssetError(path, "takes lazrs, which is not installed", fix="pip install lazrs")
         if done.returncode != 0:
             raise AssetError(path, "lazrs cannot unpack it", fix=_AGAIN)
         return made.read_bytes()

@@ -16,8 +16,8 @@ from voxrt.cli.results.build_results import print_json
 from voxrt.cli.terminal.errors import UsageError
 from voxrt.cli.terminal.messages import budget_loss, budget_text, summarize, warn
 from voxrt.cli.terminal.progress import build_bar, stage_bar, transfer_bar
+from voxrt.export.outputs import check_folder, writing
 from voxrt.options.notations import find_board
-from voxrt.outputs import check_folder, writing
 
 if TYPE_CHECKING:
     from voxrt.boards.bitstream import PlacedBoard

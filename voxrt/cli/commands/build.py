@@ -138,7 +138,7 @@ def _check(result: voxrt.BuildResult, command: BuildCommand, bar: BuildBar) -> E
         return None
     bar.begin("check")
     try:
-        return check_preview(result)
+        return check_preview(result, bar.rows)
     except voxrt.SimulatorError:
         if command.check:
             raise

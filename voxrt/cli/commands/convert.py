@@ -12,8 +12,8 @@ from voxrt.cli.results.build_results import print_json
 from voxrt.cli.results.memory_results import ConvertResult
 from voxrt.cli.terminal.errors import UsageError
 from voxrt.cli.terminal.messages import name_file, summarize
+from voxrt.export.outputs import check_folder, writing
 from voxrt.options.shared import PREVIEW_SIZE
-from voxrt.outputs import check_folder, writing
 from voxrt.views.writers import PANE_WRITERS
 
 if TYPE_CHECKING:

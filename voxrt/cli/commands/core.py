@@ -9,7 +9,7 @@ from voxrt.cli.inputs.configuration import find_configuration
 from voxrt.cli.terminal.errors import UsageError
 from voxrt.cli.terminal.messages import print_answer, summarize, tabulate
 from voxrt.cli.terminal.progress import stage_bar
-from voxrt.outputs import check_folder, writing
+from voxrt.export.outputs import check_folder, writing
 from voxrt.rtl.configurations import RTL, read_configurations
 
 if TYPE_CHECKING:

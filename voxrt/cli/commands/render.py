@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,7 @@ from voxrt.cli.inputs.source import read_source
 from voxrt.cli.results.build_results import print_json, render_result
 from voxrt.cli.terminal.errors import UsageError
 from voxrt.cli.terminal.messages import cache_cost, picture_cost, summarize, warn
+from voxrt.cli.terminal.progress import transfer_bar
 from voxrt.octree import with_means
 from voxrt.options.render_options import RenderOptions
 from voxrt.options.view_options import CameraOptions
@@ -20,7 +22,9 @@ from voxrt.views.viewpoint import orbit
 from voxrt.voxelize.free_memory import free_memory
 
 if TYPE_CHECKING:
-    from voxrt import Frame, Lighting
+    from collections.abc import Sequence
+
+    from voxrt import Camera, Frame, Lighting
     from voxrt.export import Blob
     from voxrt.octree import Animation, Rom
     from voxrt.options.picture_commands import RenderCommand
@@ -49,11 +53,13 @@ def run(command: RenderCommand) -> None:
         return
     wrong_pixels = None
     if command.check:
-        checked = voxrt.check(memory, camera, **replace(options, root=roots[0]).for_engines())
+        with transfer_bar() as show:
+            keywords = replace(options, root=roots[0]).for_engines()
+            checked = voxrt.check(memory, camera, **keywords, progress=partial(show, "check"))
         frame, wrong_pixels = getattr(checked, engine), checked.wrong_pixels
-        voxrt.save_picture(frame.colour, file)
+        frame.save(file)
     else:
-        frame = _save([voxrt.render(memory, camera, options, root=root) for root in roots], file, blob.animation)
+        frame = _save(_rendered(memory, [(camera, root) for root in roots], options), file, blob.animation)
     if command.reporting.json:
         print_json(render_result(voxrt.Picture(frame, camera, engine), file, wrong_pixels))
     else:
@@ -168,7 +174,7 @@ def _turn(command: RenderCommand, memory: Rom, options: RenderOptions, file: Pat
         raise UsageError(f"{file}: a {file.suffix} has no transparent background; name another one")
     _check_room(_TURNS, options.size)
     cameras = orbit(memory, options.size, _TURNS, roots=roots)
-    frames = [voxrt.render(memory, camera, options, root=roots[0]) for camera in cameras]
+    frames = _rendered(memory, [(camera, roots[0]) for camera in cameras], options)
     voxrt.save_animation([one.colour for one in frames], file)
     seconds = sum(one.cost.seconds for one in frames)
     width, height = options.size
@@ -179,12 +185,27 @@ def _turn(command: RenderCommand, memory: Rom, options: RenderOptions, file: Pat
     summarize(f"{command.scene.name}:", rows)
 
 
+def _rendered(memory: Rom, views: Sequence[tuple[Camera, int]], options: RenderOptions) -> list[Frame]:
+    """Render a memory from some cameras, each with the root of its frame, and show the rows that are done."""
+    if len(views) == 1 and options.chosen_engine == "model":  # sooner done than a bar is shown
+        return [voxrt.render(memory, views[0][0], options, root=views[0][1])]
+    frames: list[Frame] = []
+    with transfer_bar() as show:
+
+        def report(done: int, total: int) -> None:
+            show("render", len(frames) * total + done, len(views) * total)
+
+        for camera, root in views:
+            frames.append(voxrt.render(memory, camera, options, root=root, progress=report))
+    return frames
+
+
 def _save(frames: list[Frame], file: Path, animation: Animation | None) -> Frame:
     """Save frames, and return the first."""
     if _is_animated(file):
         voxrt.save_animation([one.colour for one in frames], file, animation.period if animation else None)
     else:
-        voxrt.save_picture(frames[0].colour, file)
+        frames[0].save(file)
     return frames[0]
 
 
@@ -197,7 +218,7 @@ def _take_path(command: RenderCommand, memory: Rom, options: RenderOptions, file
     path, results, wrong = read_cameras(command.cameras, memory, command.size), [], 0
     for picture in take_pictures(job, path, command.scheduler, command.workers):
         target = file.with_stem(f"{file.stem}-{picture.number:04d}")
-        voxrt.save_picture(picture.frame.colour, target)
+        picture.frame.save(target)
         wrong += picture.wrong_pixels or 0
         view = voxrt.Picture(picture.frame, path[picture.number], options.chosen_engine)
         results.append(render_result(view, target, picture.wrong_pixels))

@@ -12,8 +12,8 @@ from voxrt.cli.commands.trace import check_pixel
 from voxrt.cli.inputs.source import Source, read_source
 from voxrt.cli.terminal.errors import UsageError
 from voxrt.cli.terminal.messages import summarize
+from voxrt.export.outputs import check_folder, writing
 from voxrt.options.shared import PREVIEW_SIZE
-from voxrt.outputs import check_folder, writing
 from voxrt.view.animation import ANIMATION_SUFFIXES, write_animation
 from voxrt.view.plotter import check_screen
 from voxrt.view.scene_overlay import find_owners, preview_of, scene_triangles

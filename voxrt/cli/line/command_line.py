@@ -35,11 +35,13 @@ def command_options(name: str) -> dict[str, Option]:
     return {one: option for one, option in options_of(COMMANDS[name].options()).items() if option.group is not None}
 
 
-def find_command(name: str) -> str:
-    """Return the name of a command, or refuse what is none."""
+def find_command(name: str, tasks: Iterable[str] = ()) -> str:
+    """Return the name of a command, or refuse what is none; `tasks`: what could be named as well."""
     if name in COMMANDS:
         return name
-    raise UsageError(f"there is no command {name!r}{_perhaps(name, COMMANDS)}; name one of {', '.join(COMMANDS)}")
+    names = (*COMMANDS, *tasks)
+    kind = "command or task" if tasks else "command"
+    raise UsageError(f"there is no {kind} {name!r}{_perhaps(name, names)}; name one of {', '.join(names)}")
 
 
 def asks_for_help(arguments: Sequence[str]) -> bool:

@@ -60,7 +60,13 @@ def _bash() -> str:
         "  esac\n"
         '  COMPREPLY=($(compgen -W "$words" -- "$current"))\n'
         "}\n"
+        "_voxrt_build() {\n"
+        '  COMP_WORDS=(voxrt build "${COMP_WORDS[@]:1}")\n'
+        "  COMP_CWORD=$((COMP_CWORD + 1))\n"
+        "  _voxrt\n"
+        "}\n"
         "complete -o default -F _voxrt voxrt\n"
+        "complete -o default -F _voxrt_build voxrt-build\n"
     )
 
 
@@ -77,8 +83,9 @@ def _zsh() -> str:
         cases.append(f"    {command}) _arguments {' '.join(entries)} ;;")
     commands = " ".join(f"'{name}:{command.purpose.replace(chr(39), '')}'" for name, command in COMMANDS.items())
     return (
-        "#compdef voxrt\n"
+        "#compdef voxrt voxrt-build\n"
         "_voxrt() {\n"
+        '  if [[ $service == voxrt-build ]]; then words=(voxrt build "${(@)words[2,-1]}"); (( CURRENT++ )); fi\n'
         "  if (( CURRENT == 2 )); then\n"
         f"    local -a commands=({commands})\n"
         "    _describe command commands\n"
@@ -89,7 +96,7 @@ def _zsh() -> str:
         "  case $command in\n" + "\n".join(cases) + "\n"
         "  esac\n"
         "}\n"
-        "compdef _voxrt voxrt\n"
+        "compdef _voxrt voxrt voxrt-build\n"
     )
 
 
@@ -100,7 +107,7 @@ def _zsh_values(option: Option) -> str:
 
 
 def _fish() -> str:
-    lines = ["complete -c voxrt -n __fish_use_subcommand -f"]
+    lines = ["complete -c voxrt -n __fish_use_subcommand -f", "complete -c voxrt-build -w 'voxrt build'"]
     for command, about in COMMANDS.items():
         purpose = about.purpose.replace("'", "")
         lines.append(f"complete -c voxrt -n __fish_use_subcommand -a {command} -d '{purpose}'")

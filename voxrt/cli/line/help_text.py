@@ -11,6 +11,7 @@ from voxrt.cli.line.command_line import HELP_FLAGS, command_options, flags_of
 from voxrt.options.commands import COMMANDS
 from voxrt.options.option import ARGUMENTS, spell_options
 from voxrt.options.shared import MESSAGES
+from voxrt.options.tasks import TASKS
 
 if TYPE_CHECKING:
     from voxrt.options.option import Option
@@ -31,8 +32,18 @@ def overview() -> str:
         f"Commands\n{''.join(rows)}\n"
         f"{_entry('-h, --help', 'Print this help; after a command, that of the command.')}"
         f"{_entry('-V, --version', 'Print the version.')}\n"
+        f"Tasks, with their command lines: voxrt help {'|'.join(TASKS)}\n"
         "Example: voxrt build courtyard.glb -o out --preview\n"
     )
+
+
+def task_help(task: str) -> str:
+    """Return the command lines of a task."""
+    purpose, lines = TASKS[task]
+    width = max(len(line) for line, _ in lines)
+    shown = "".join(f"    {line:<{width}}  # {comment}\n" for line, comment in lines)
+    commands = ", ".join(dict.fromkeys(line.split()[1] if line.startswith("voxrt ") else "build" for line, _ in lines))
+    return f"{purpose}\n\n{shown}\nvoxrt help COMMAND describes all options of {commands}.\n"
 
 
 def command_help(command: str, *, full: bool) -> str:

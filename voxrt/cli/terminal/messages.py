@@ -7,7 +7,7 @@ import sys
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
-from voxrt.outputs import OutputError
+from voxrt.export.outputs import OutputError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -50,6 +50,11 @@ class BuildBar:
             note(f"{self._stage} took {perf_counter() - self._begun:.2f} s")
         self._stage = ""
 
+    def rows(self, done: int, total: int) -> None:
+        """Show how many rows of a picture are done; the bar is theirs from now on."""
+        if self._progress is not None and self._task is not None:
+            self._progress.update(self._task, completed=done, total=total, by_time=False)
+
     def tiles(self, progress: ClusterProgress) -> None:
         """Show how far a cluster is."""
         text = (
@@ -89,12 +94,12 @@ def build_bar() -> Iterator[BuildBar]:
         """A bar that fills with the time; it waits just before its end for a build that takes longer."""
 
         def render(self, task: Task):  # type: ignore[no-untyped-def]  # noqa: ANN202 - as the base class says
-            if task.total is not None and task.elapsed is not None:
+            if task.total is not None and task.elapsed is not None and task.fields["by_time"]:
                 task.completed = min(task.elapsed, 0.98 * task.total)
             return super().render(task)
 
     with _terminal_progress(TimeColumn()) as progress:
-        yield BuildBar(progress, progress.add_task("", total=None))
+        yield BuildBar(progress, progress.add_task("", total=None, by_time=True))
 
 
 @contextmanager
