@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.box_rounding import Pow2
     from voxrt.voxelize.grid import Grid
     from voxrt.voxelize.object_proxies import Geometry
+    from voxrt.voxelize.rules import Rule, Thin
     from voxrt.voxelize.scene import Scene
     from voxrt.voxelize.voxels import Voxels
 
@@ -83,8 +84,8 @@ class BlockVoxelizer:
         grid: Grid,
         *,
         fill: Literal["solid", "surface", "auto"] = "solid",
-        rule: Literal["touch", "centre"] = "touch",
-        thin: Literal["keep", "drop"] = "keep",
+        rule: Rule = "touch",
+        thin: Thin = "keep",
         geometry: Geometry = "auto",
         pow2: Pow2 = "box",
         threads: int = 0,
@@ -179,8 +180,8 @@ def voxelize_in_blocks(
     *,
     block_side: int,
     fill: Literal["solid", "surface", "auto"] = "solid",
-    rule: Literal["touch", "centre"] = "touch",
-    thin: Literal["keep", "drop"] = "keep",
+    rule: Rule = "touch",
+    thin: Thin = "keep",
     geometry: Geometry = "auto",
     pow2: Pow2 = "box",
     threads: int = 0,

@@ -44,7 +44,8 @@ def join_open_objects(scene: Scene) -> Scene:
     parts = [scene.objects[i] for i in chosen]
     names = [one.name for one in parts]
     name = " + ".join(names[:_MOST_NAMES]) + (f" + {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else "")
-    joined = SceneObject(name, _joined([_placed(one) for one in parts]))
+    rules = {one.rule for one in parts}
+    joined = SceneObject(name, _joined([_placed(one) for one in parts]), rule=rules.pop() if len(rules) == 1 else None)
     left = set(chosen[1:])
     objects = (joined if i == chosen[0] else one for i, one in enumerate(scene.objects) if i not in left)
     return replace(scene, objects=tuple(objects))

@@ -15,6 +15,7 @@ from voxrt.voxelize.collider_shapes import BoxCollider, Collider, HullCollider, 
 from voxrt.voxelize.materials import MATERIAL_LIMIT, Material
 from voxrt.voxelize.mesh import NO_TRIANGLES, Mesh
 from voxrt.voxelize.point_cloud import PointCloud
+from voxrt.voxelize.rules import RULES, Rule
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -46,6 +47,8 @@ class SceneObject:
     points
         Its points, which become voxels where it has no colliders; None for none. :func:`place_points` makes the mesh
         that is voxelized in their place.
+    rule
+        Which voxels it fills, as :func:`voxelize` takes it; None for what the build says.
 
     Raises
     ------
@@ -67,6 +70,7 @@ class SceneObject:
     hidden: bool = False
     represented: bool = False
     points: PointCloud | None = None
+    rule: Rule | None = None
 
     def __post_init__(self) -> None:
         arguments.text("SceneObject.name", self.name)
@@ -81,6 +85,8 @@ class SceneObject:
         material = arguments.whole("SceneObject.collider_material", self.collider_material, 1, MATERIAL_LIMIT)
         if self.points is not None:
             arguments.instance("SceneObject.points", self.points, PointCloud)
+        if self.rule is not None:
+            arguments.choice("SceneObject.rule", self.rule, RULES)
         object.__setattr__(self, "transform", transform.astype(np.float64, copy=False))
         object.__setattr__(self, "colliders", colliders)
         object.__setattr__(self, "collider_material", material)

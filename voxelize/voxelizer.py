@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.box_rounding import Pow2
     from voxrt.voxelize.grid import Grid
     from voxrt.voxelize.object_proxies import Geometry
+    from voxrt.voxelize.rules import Rule, Thin
     from voxrt.voxelize.scene import Scene
 
 MOST_THREADS = 1024
@@ -32,8 +33,8 @@ def voxelize(
     grid: Grid,
     *,
     fill: Literal["solid", "surface", "auto"] = "solid",
-    rule: Literal["touch", "centre"] = "touch",
-    thin: Literal["keep", "drop"] = "keep",
+    rule: Rule = "touch",
+    thin: Thin = "keep",
     geometry: Geometry = "auto",
     pow2: Pow2 = "box",
     threads: int = 0,
@@ -52,6 +53,7 @@ def voxelize(
     rule
         ``"touch"``: a voxel is solid when an object's closed solid overlaps its interior at all. ``"centre"``: when its
         centre lies in an object's closed solid. A surface that encloses nothing keeps each voxel that it touches.
+        Objects with a rule of their own keep that.
     thin
         What becomes of parts too thin for the rule. ``"keep"``: they keep some of the voxels that they touch, so that
         each of these is solid or has a solid one among its 26 neighbours, and what is connected stays so. ``"drop"``:

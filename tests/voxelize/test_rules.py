@@ -202,3 +202,29 @@ def test_other_values_are_refused(name, value):
     scene = one_object(box_mesh((1, 1, 1), (2, 2, 2)))
     with pytest.raises(ValueError, match=f"^{name} must be "):
         voxelize(scene, Grid(3, (0.0, 0.0, 0.0), 1.0), **{name: value})
+
+
+def test_objects_keep_rules_of_their_own(tmp_path):
+    """In scene files, glTF and USD, through the process that reads USD."""
+    boxes = {"own": [0.25, 0.25, 0.25], "other": [4.25, 0.25, 0.25]}
+    entries = [f'[[objects]]\nname = "{name}"\nbox.size = [2, 2, 2]\ntranslate = {at}\n' for name, at in boxes.items()]
+    (tmp_path / "scene.toml").write_text(f'{entries[0]}rule = "centre"\n{entries[1]}')
+    half = box_mesh((-1, -1, -1), (1, 1, 1))
+    prims = "\n".join(
+        f'def Xform "x{name}" {{ {"token voxrt:rule = " + chr(34) + "centre" + chr(34) if name == "own" else ""}\n'
+        f'def Mesh "{name}" {{ double3 xformOp:translate = ({at[0]}, {at[1]}, {at[2]})\n'
+        'uniform token[] xformOpOrder = ["xformOp:translate"]\n'
+        f"point3f[] points = [{', '.join(str(tuple(p)) for p in half.positions.tolist())}]\n"
+        f"int[] faceVertexCounts = {[3] * 12}\nint[] faceVertexIndices = {half.triangles.ravel().tolist()}\n}}\n}}"
+        for name, at in boxes.items()
+    )
+    (tmp_path / "scene.usda").write_text(f'#usda 1.0\n(\n metersPerUnit = 1\n upAxis = "Y"\n)\n{prims}\n')
+    for file in ("scene.toml", "scene.usda"):
+        scene = load(tmp_path / file)
+        made = voxelize(scene, Grid(4, (-4.0, -4.0, -4.0), 1.0))
+        assert [(one.rule, report.voxels) for one, report in zip(scene.objects, made.objects, strict=True)] == [
+            ("centre", 8),
+            (None, 27),
+        ]
+    scene = load(tmp_path / "scene.toml")
+    assert [one.voxels for one in voxelize(scene, Grid(4, (-4.0, -4.0, -4.0), 1.0), rule="centre").objects] == [8, 8]

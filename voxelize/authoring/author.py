@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
     from voxrt.voxelize.authoring.declared_materials import Colour
     from voxrt.voxelize.collider_shapes import ColliderKind
+    from voxrt.voxelize.rules import Rule
 
 
 class Author:
@@ -102,6 +103,7 @@ class Author:
         scale: float | Sequence[float] = 1,
         collider: ColliderKind | None = None,
         pow2: bool = True,
+        rule: Rule | None = None,
     ) -> None:
         """Add a solid as one object.
 
@@ -119,6 +121,8 @@ class Author:
             The collider to voxelize in its place: ``"box"``, ``"sphere"``, ``"hull"`` or ``"mesh"``; None for none.
         pow2
             Whether a box collider is rounded up to powers of two voxels.
+        rule
+            Which voxels it fills: ``"touch"`` or ``"centre"``; None for what the build says.
 
         Raises
         ------
@@ -130,7 +134,7 @@ class Author:
             The solid is empty, or the placement is not valid.
         """
         self.add_transformed(
-            name, solid, placement(translate, rotate, scale), material=material, collider=collider, pow2=pow2
+            name, solid, placement(translate, rotate, scale), material=material, collider=collider, pow2=pow2, rule=rule
         )
 
     def add_transformed(
@@ -142,6 +146,7 @@ class Author:
         material: str | None = None,
         collider: ColliderKind | None = None,
         pow2: bool = True,
+        rule: Rule | None = None,
     ) -> None:
         """Add a solid as :meth:`add` does, placed by a matrix (shape (4, 4), affine, column vectors)."""
         arguments.instance("solid", solid, Solid)
@@ -149,7 +154,7 @@ class Author:
         ids = np.concatenate([np.full(count, self._id_of(own, count), dtype=np.uint8) for own, count in runs])
         colliders = [] if collider is None else [collider_around(collider, positions, triangles, pow2=pow2)]
         mesh = Mesh(positions, triangles, ids)
-        self._enter(SceneObject(name, mesh, _finite(name, transform), tuple(colliders), int(ids[0])))
+        self._enter(SceneObject(name, mesh, _finite(name, transform), tuple(colliders), int(ids[0]), rule=rule))
 
     def add_asset(
         self,
@@ -160,6 +165,7 @@ class Author:
         materials: Mapping[str, str] | None = None,
         collider: ColliderKind | None = None,
         pow2: bool = True,
+        rule: Rule | None = None,
     ) -> None:
         """Add all objects of a loaded file, named ``name/…``.
 
@@ -178,6 +184,8 @@ class Author:
             Replaces the colliders of each of its objects.
         pow2
             Whether a box `collider` is rounded up to powers of two voxels.
+        rule
+            Which voxels those of its objects fill that have no rule of their own.
 
         Raises
         ------
@@ -208,7 +216,8 @@ class Author:
                 placed = outer @ one.transform
             flags = (one.hidden and not (collider and filling), one.represented)
             placed = _finite(path, placed)
-            self._enter(SceneObject(path, mesh, placed, colliders, filling or 1, *flags, one.points))
+            made = SceneObject(path, mesh, placed, colliders, filling or 1, *flags, one.points, one.rule or rule)
+            self._enter(made)
         for warning in asset.warnings:
             self._log.add(warning.kind, f"{name}: {warning.message}", warning.count)
 

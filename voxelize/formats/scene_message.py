@@ -23,6 +23,7 @@ from voxrt.voxelize.corner_normals import CornerNormals
 from voxrt.voxelize.errors import SceneWarning  # noqa: TC001 -- msgspec reads the annotations
 from voxrt.voxelize.materials import Material  # noqa: TC001 -- msgspec reads the annotations
 from voxrt.voxelize.mesh import Mesh
+from voxrt.voxelize.rules import Rule  # noqa: TC001 -- msgspec reads the annotations
 from voxrt.voxelize.scene import PointLight, Scene, SceneObject, Viewpoint
 
 if TYPE_CHECKING:
@@ -80,6 +81,7 @@ class ObjectsMessage(msgspec.Struct, frozen=True):
     materials: list[Row]
     hidden: list[bool]
     represented: list[bool]
+    rules: list[Rule | None]
 
 
 class SceneMessage(msgspec.Struct, frozen=True):
@@ -162,6 +164,7 @@ def scene_bytes(scene: Scene) -> list[bytes | memoryview]:
             [one.collider_material for one in scene.objects],
             [one.hidden for one in scene.objects],
             [one.represented for one in scene.objects],
+            [one.rule for one in scene.objects],
         ),
         [_mesh_message(one, appearances) for one in meshes],
         [_appearance_message(one, textures) for one in appearances],
@@ -211,12 +214,20 @@ def _scene(message: SceneMessage) -> Scene:
     meshes = [_mesh(one, appearances) for one in message.meshes]
     colliders = [_collider(one) for one in message.colliders]
     objects = message.objects
-    columns = (getattr(objects, name) for name in objects.__struct_fields__)
     return Scene(
         message.name,
         tuple(
-            SceneObject(name, meshes[mesh], transform, tuple(colliders[row] for row in own), material, *flags)
-            for name, mesh, transform, own, material, *flags in zip(*columns, strict=True)
+            SceneObject(
+                objects.names[i],
+                meshes[objects.meshes[i]],
+                objects.transforms[i],
+                tuple(colliders[row] for row in objects.colliders[i]),
+                objects.materials[i],
+                hidden=objects.hidden[i],
+                represented=objects.represented[i],
+                rule=objects.rules[i],
+            )
+            for i in range(_common_length(objects))
         ),
         tuple(message.materials),
         tuple(message.warnings),
@@ -224,6 +235,13 @@ def _scene(message: SceneMessage) -> Scene:
         message.light,
         tuple(message.cameras),
     )
+
+
+def _common_length(objects: ObjectsMessage) -> int:
+    lengths = {len(getattr(objects, column)) for column in objects.__struct_fields__}
+    if len(lengths) != 1:
+        raise ValueError(f"columns of objects have {lengths} rows")
+    return lengths.pop()
 
 
 def _mesh_message(one: Mesh, appearances: _Shared[Appearance]) -> MeshMessage:

@@ -29,10 +29,9 @@ from voxrt.options.shared import (
     Dialect,
     Engine,
 )
+from voxrt.voxelize.rules import RULES, THIN_CHOICES, Rule, Thin
 
 Fill: TypeAlias = Literal["solid", "surface", "auto", "together"]
-Rule: TypeAlias = Literal["touch", "centre"]
-Thin: TypeAlias = Literal["keep", "drop"]
 Geometry: TypeAlias = Literal["auto", "render", "collider"]
 Pow2: TypeAlias = Literal["box", "none"]
 UpAxis: TypeAlias = Literal["x", "y", "z"]
@@ -80,11 +79,11 @@ class BuildOptions:
         "another, such as a box and its lid, are one object.",
         details="Open are pieces whose openings exceed 5 % of their area together, such as clothes.",
         manifest="always")
-    rule: Rule = option(one_of(get_args(Rule)), "touch", CONTENT,
+    rule: Rule = option(one_of(RULES), "touch", CONTENT,
         "Which voxels of solids are filled. touch: all that a solid touches, which makes objects fat. centre: those "
         "whose centre is in a solid.",
         details="A surface that encloses nothing keeps each voxel that it touches.", manifest="always")
-    thin: Thin = option(one_of(get_args(Thin)), "keep", CONTENT,
+    thin: Thin = option(one_of(THIN_CHOICES), "keep", CONTENT,
         "Parts too thin for {rule}. keep: some of the voxels that they touch stay, so that none gets lost or breaks. "
         "drop: no more than the rule gives.", is_rare=True, manifest="always")
     interior: int | str = option(notations.INTERIOR, "keep", CONTENT,

@@ -9,9 +9,10 @@ if TYPE_CHECKING:
     from os import PathLike
 
     from voxrt.octree.camera import Lighting
-    from voxrt.options.build_options import Fill, Geometry, Pow2, Rule, Thin, UpAxis
+    from voxrt.options.build_options import Fill, Geometry, Pow2, UpAxis
     from voxrt.options.shared import Dialect, Engine
     from voxrt.sim import Background, Dram
+    from voxrt.voxelize.rules import Rule, Thin
 
 
 class BuildKeywords(TypedDict, total=False):

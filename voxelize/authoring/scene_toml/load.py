@@ -105,10 +105,9 @@ class _Builder:
         name = self._unique(prefix + (node.name or f"{shape} {int(where[-1]) + 1}"))
         material = node.material or material
         if node.group is not None:
-            if node.collider is not None:
-                raise self._checked.error(
-                    (*where, "collider"), "a group cannot have a collider", "put it on its objects"
-                )
+            for key in ("collider", "rule"):
+                if getattr(node, key) is not None:
+                    raise self._checked.error((*where, key), f"a group cannot have a {key}", "put it on its objects")
             for index, one in enumerate(node.group):
                 self._add(one, (*where, "group", index), f"{name}/", outer @ self._place(node, where), material)
             return
@@ -125,10 +124,17 @@ class _Builder:
                     materials=node.asset.materials,
                     collider=node.collider,
                     pow2=node.pow2,
+                    rule=node.rule,
                 )
                 return
             self._author.add_transformed(
-                name, self._unplaced(node, where), transform, material=material, collider=node.collider, pow2=node.pow2
+                name,
+                self._unplaced(node, where),
+                transform,
+                material=material,
+                collider=node.collider,
+                pow2=node.pow2,
+                rule=node.rule,
             )
         except ValueError as error:
             raise self._checked.error((*where, shape), str(error), "correct the object") from None
@@ -172,7 +178,7 @@ class _Builder:
         if shape == "group":
             raise self._checked.error((*where, "group"), "a group is not a solid", "use union")
         for index, one in enumerate(getattr(node, shape)):
-            for key in ("collider", "name"):
+            for key in ("collider", "name", "rule"):
                 if getattr(one, key) is not None:
                     problem = f"a part of a {shape} cannot have a {key}"
                     raise self._checked.error((*where, shape, index, key), problem, "put it on the whole")

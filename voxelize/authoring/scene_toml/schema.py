@@ -9,6 +9,7 @@ from msgspec import Meta, Struct
 from voxrt.voxelize.authoring.solid import Axis  # noqa: TC001 -- msgspec reads the annotations
 from voxrt.voxelize.authoring.transforms import FARTHEST
 from voxrt.voxelize.collider_shapes import ColliderKind  # noqa: TC001 -- msgspec reads the annotations
+from voxrt.voxelize.rules import Rule  # noqa: TC001
 
 Number: TypeAlias = Annotated[float, Meta(ge=-FARTHEST, le=FARTHEST)]
 Point: TypeAlias = tuple[Number, Number, Number]
@@ -123,6 +124,8 @@ class Node(_Table, frozen=True, kw_only=True):
         The material of its parts that have none.
     collider, pow2
         The collider to voxelize in its place, and whether a box is rounded up to powers of two voxels.
+    rule
+        Which voxels it fills: ``touch`` or ``centre``.
     """
 
     name: str | None = None
@@ -143,6 +146,7 @@ class Node(_Table, frozen=True, kw_only=True):
     material: str | None = None
     collider: ColliderKind | None = None
     pow2: bool = True
+    rule: Rule | None = None
 
 
 SHAPES = (

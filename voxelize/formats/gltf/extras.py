@@ -1,7 +1,8 @@
 """Properties for voxrt in the `extras` of nodes and materials (custom properties, in Blender).
 
 `voxrt_material` names the material that a node's faces take, or renames a material; `voxrt_collider` makes a node's
-mesh collide as a box, a sphere, a hull or a mesh; `voxrt_reflect` makes a material, or what a node shows, a mirror.
+mesh collide as a box, a sphere, a hull or a mesh; `voxrt_rule` says which voxels it fills; `voxrt_reflect` makes a
+material, or what a node shows, a mirror.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import msgspec
 
 from voxrt.voxelize.collider_shapes import ColliderKind  # noqa: TC001 -- msgspec reads the annotations
 from voxrt.voxelize.formats.gltf.schema_errors import explain
+from voxrt.voxelize.rules import Rule  # noqa: TC001
 
 if TYPE_CHECKING:
     from voxrt.voxelize.formats.gltf.document import Document
@@ -26,9 +28,10 @@ class MaterialExtras(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class NodeExtras(MaterialExtras, frozen=True, kw_only=True):
-    """The properties of a node: the material of its faces, whether they are mirrors, and its collider."""
+    """The properties of a node: the material of its faces, whether they are mirrors, its collider and its rule."""
 
     voxrt_collider: ColliderKind | None = None
+    voxrt_rule: Rule | None = None
 
 
 def refuse_misplaced(document: Document) -> None:

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.formats.gltf.extras import NodeExtras
     from voxrt.voxelize.formats.gltf.meshes import Surface
     from voxrt.voxelize.formats.gltf.nodes import Hierarchy
+    from voxrt.voxelize.rules import Rule
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +48,7 @@ class NodeContent:
     collider_kind: ColliderKind | None  # the kind of collider that its author wants around the mesh, or None
     collider: Collider | None  # the node's own collider, in its frame, or None
     transforms: NDArray[np.float64]  # float64, shape (N, 4, 4): to the scene frame, one per instance
+    rule: Rule | None = None  # which voxels it fills, or None for what the build says
 
 
 class VisibleNodes:
@@ -76,12 +78,15 @@ class VisibleNodes:
                 # A skin moves its mesh to the scene frame. It does not move the node's collider.
                 skinned = mesh[0].skinned_by is not None
                 placed = self._placed(node, np.eye(4) if skinned else frame)
-                yield NodeContent(node, mesh, material, extras.voxrt_collider, None if skinned else collider, placed)
+                own = None if skinned else collider
+                yield NodeContent(node, mesh, material, extras.voxrt_collider, own, placed, extras.voxrt_rule)
                 if not skinned:
                     continue
-            elif extras.voxrt_collider is not None:
-                place = f"nodes[{node}].extras.voxrt_collider"
-                raise self._document.error(place, "the node shows no triangles", "put it on the node with the mesh")
+            else:
+                for key in ("voxrt_collider", "voxrt_rule"):
+                    if getattr(extras, key) is not None:
+                        problem, fix = "the node shows no triangles", "put it on the node with the mesh"
+                        raise self._document.error(f"nodes[{node}].extras.{key}", problem, fix)
             if collider is not None:
                 if override is None:
                     message = "colliders without a mesh or a material got the default one"

@@ -19,6 +19,7 @@ from voxrt.voxelize.formats.usd.normals import authored_normals
 from voxrt.voxelize.formats.usd.physics import colliders_of
 from voxrt.voxelize.formats.usd.skin import PREDICATE, Deformed, deformed_meshes
 from voxrt.voxelize.mesh import NO_TRIANGLES
+from voxrt.voxelize.rules import RULES
 from voxrt.voxelize.scene import SceneObject
 from voxrt.voxelize.warning_log import WarningLog
 
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.formats.external_files import ExternalFiles
     from voxrt.voxelize.formats.usd.limits import Allowance
     from voxrt.voxelize.formats.usd.shading import Shading
+    from voxrt.voxelize.rules import Rule
 
 MOST_OBJECTS = 1_000_000
 """The most objects of a stage: nested instancers can request more copies than memory holds."""
@@ -49,7 +51,7 @@ _PROTOTYPE_PREDICATE = Usd.TraverseInstanceProxies(Usd.PrimIsActive & Usd.PrimIs
 class _PlacedMesh:
     """An object whose mesh, an index into the traversal's meshes, has no materials yet; None for a hidden object.
 
-    `body` is the path of the rigid body that it is part of; empty for none.
+    `body` is the path of the rigid body that it is part of; empty for none. `rule`: see :func:`_rule_of`.
     """
 
     name: str
@@ -57,6 +59,7 @@ class _PlacedMesh:
     transform: NDArray[np.float64]
     colliders: tuple[Collider, ...]
     body: str
+    rule: Rule | None
 
 
 @dataclass(eq=False, slots=True)
@@ -104,13 +107,23 @@ class StageTraversal:
                 nearest.setdefault(above, material)
             represented = not one.colliders and one.body in bodies
             objects.append(
-                SceneObject(one.name, meshes[one.mesh], transform, one.colliders, material, represented=represented)
+                SceneObject(
+                    one.name,
+                    meshes[one.mesh],
+                    transform,
+                    one.colliders,
+                    material,
+                    represented=represented,
+                    rule=one.rule,
+                )
             )
         for one, transform in zip(placed, transforms, strict=True):
             if one.mesh is None:
                 material = next((nearest[above] for above in _ancestors(one.name) if above in nearest), 0)
                 material = material or self.materials.table.default(self.log)
-                objects.append(SceneObject(one.name, NO_TRIANGLES, transform, one.colliders, material, hidden=True))
+                objects.append(
+                    SceneObject(one.name, NO_TRIANGLES, transform, one.colliders, material, hidden=True, rule=one.rule)
+                )
         return tuple(objects)
 
     def _to_scene(self, one: _PlacedMesh, to_scene: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -198,7 +211,8 @@ class StageTraversal:
             if colliders:
                 self._charge(1)
                 transform = self._to_stage(deformed.frame if deformed else prim)
-                placed.append(_PlacedMesh(str(prim.GetPath()), None, transform, colliders, _body_of(prim)))
+                rule = _rule_of(prim, self.path)
+                placed.append(_PlacedMesh(str(prim.GetPath()), None, transform, colliders, _body_of(prim), rule))
         self.log.add("collider", "colliders that are not shown count with geometry collider alone", len(placed))
         return placed
 
@@ -225,7 +239,8 @@ class StageTraversal:
         self._charge(1)
         colliders = colliders_of(source, surface, self.time, self.log)
         transform = self._to_stage(deformed.frame if deformed else prim)
-        return [_PlacedMesh(name, self._rows[shared], transform, colliders, _body_of(prim))]
+        rule = _rule_of(prim, self.path)
+        return [_PlacedMesh(name, self._rows[shared], transform, colliders, _body_of(prim), rule)]
 
     def _count_without_surface(self, prim: Usd.Prim) -> None:
         """Count a prim without a surface."""
@@ -250,3 +265,18 @@ def _ancestors(path: str) -> Iterator[str]:
     while path:
         path = path.rpartition("/")[0]
         yield path
+
+
+_RULE = "voxrt:rule"  # an attribute of prims: a token
+
+
+def _rule_of(prim: Usd.Prim, path: Path) -> Rule | None:
+    """Return which voxels a prim fills: as it says, or its nearest ancestor; None for what the build says."""
+    at = prim
+    while at and not at.HasAttribute(_RULE):
+        at = at.GetParent()
+    wanted = at.GetAttribute(_RULE).Get() if at else None
+    if wanted is None or wanted in RULES:
+        return wanted
+    place = f"{at.GetPath()}.{_RULE}"
+    raise AssetError(path, f"{str(wanted)[:60]!r} is no rule", place=place, fix=f"name one of {', '.join(RULES)}")

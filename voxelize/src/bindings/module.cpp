@@ -97,20 +97,21 @@ Fill fill_of(const std::string& name) {
     return name == "surface" ? Fill::surface : name == "solid" ? Fill::solid : Fill::automatic;
 }
 
-VoxelRule rule_of(const std::string& rule, const std::string& thin) {
-    require(rule == "touch" || rule == "centre", "rule must be touch or centre");
-    require(thin == "keep" || thin == "drop", "thin must be keep or drop");
-    return {rule == "touch" ? Rule::touch : Rule::centre, thin == "keep" ? Thin::keep : Thin::drop};
+Thin thin_of(const std::string& name) {
+    require(name == "keep" || name == "drop", "thin must be keep or drop");
+    return name == "keep" ? Thin::keep : Thin::drop;
 }
 
 /// The parts of a scene, with the arrays that they borrow.
 class SceneParts {
 public:
     SceneParts(int depth, std::vector<MeshArrays> meshes, InputOf<uint8_t> kinds, InputOf<int32_t> mesh_of,
-               InputOf<double> frames, InputOf<uint8_t> materials, InputOf<int32_t> objects_of, int objects)
+               InputOf<double> frames, InputOf<uint8_t> materials, InputOf<int32_t> objects_of, InputOf<uint8_t> rules,
+               int objects)
         : meshes_(std::move(meshes)), frames_(std::move(frames)) {
         require(depth >= 1 && depth <= 16, "depth must be 1 … 16");
         require(objects >= 0, "objects must not be negative");
+        require(rules.ndim() == 1 && rules.size() == size_t(objects), "rules must have an element per object");
         const size_t count = kinds.size();
         require(kinds.ndim() == 1 && mesh_of.ndim() == 1 && materials.ndim() == 1 && objects_of.ndim() == 1 &&
                     mesh_of.size() == count && materials.size() == count && objects_of.size() == count,
@@ -136,7 +137,8 @@ public:
                     "a part needs a material");
             require(objects_of.data()[p] >= 0 && objects_of.data()[p] < objects, "objects_of must be below objects");
             require(p == 0 || objects_of.data()[p - 1] <= objects_of.data()[p], "objects_of must ascend");
-            parts.push_back({kind, mesh, frames_.data() + 12 * p, materials.data()[p], uint32_t(objects_of.data()[p])});
+            parts.push_back({kind, mesh, frames_.data() + 12 * p, materials.data()[p], uint32_t(objects_of.data()[p]),
+                             rules.data()[objects_of.data()[p]] == 0 ? Rule::touch : Rule::centre});
         }
     }
     SceneParts(const SceneParts&) = delete;
@@ -167,14 +169,15 @@ nb::object voxelized_of(SparseVoxels& out) {
 void require_threads(int threads) { require(threads >= 0 && threads <= 1024, "threads must be 0 … 1024"); }
 
 nb::object voxelize_parts(int depth, std::vector<MeshArrays> meshes, InputOf<uint8_t> kinds, InputOf<int32_t> mesh_of,
-                          InputOf<double> frames, InputOf<uint8_t> materials, InputOf<int32_t> objects_of, int objects,
-                          const std::string& fill, const std::string& rule, const std::string& thin, int threads) {
+                          InputOf<double> frames, InputOf<uint8_t> materials, InputOf<int32_t> objects_of,
+                          InputOf<uint8_t> rules, int objects, const std::string& fill, const std::string& thin,
+                          int threads) {
     require_threads(threads);
-    const SceneParts scene(depth, std::move(meshes), kinds, mesh_of, frames, materials, objects_of, objects);
+    const SceneParts scene(depth, std::move(meshes), kinds, mesh_of, frames, materials, objects_of, rules, objects);
     SparseVoxels out;
     {
         const LongCall call;
-        out = voxelize(depth, scene.parts, size_t(objects), fill_of(fill), threads, rule_of(rule, thin));
+        out = voxelize(depth, scene.parts, size_t(objects), fill_of(fill), threads, thin_of(thin));
     }
     return voxelized_of(out);
 }
@@ -183,18 +186,17 @@ nb::object voxelize_parts(int depth, std::vector<MeshArrays> meshes, InputOf<uin
 class PythonBlockVoxelizer {
 public:
     PythonBlockVoxelizer(int depth, std::vector<MeshArrays> meshes, InputOf<uint8_t> kinds, InputOf<int32_t> mesh_of,
-                         InputOf<double> frames, InputOf<uint8_t> materials, InputOf<int32_t> objects_of, int objects,
-                         const std::string& fill, const std::string& rule, const std::string& thin, int threads,
-                         InputOf<uint8_t> wanted)
-        : scene_(depth, std::move(meshes), kinds, mesh_of, frames, materials, objects_of, objects), side_(1 << depth),
-          objects_(size_t(objects)) {
+                         InputOf<double> frames, InputOf<uint8_t> materials, InputOf<int32_t> objects_of,
+                         InputOf<uint8_t> rules, int objects, const std::string& fill, const std::string& thin,
+                         int threads, InputOf<uint8_t> wanted)
+        : scene_(depth, std::move(meshes), kinds, mesh_of, frames, materials, objects_of, rules, objects),
+          side_(1 << depth), objects_(size_t(objects)) {
         require_threads(threads);
         require(wanted.ndim() == 1 && (wanted.size() == 0 || wanted.size() == objects_),
                 "wanted must have an element per object, or none");
         const LongCall call;
-        native_ =
-            std::make_unique<BlockVoxelizer>(depth, scene_.parts, objects_, fill_of(fill), threads, rule_of(rule, thin),
-                                             std::span<const uint8_t>(wanted.data(), wanted.size()));
+        native_ = std::make_unique<BlockVoxelizer>(depth, scene_.parts, objects_, fill_of(fill), threads, thin_of(thin),
+                                                   std::span<const uint8_t>(wanted.data(), wanted.size()));
     }
 
     void use_threads(int threads) {
@@ -301,8 +303,10 @@ objects_of
     Shape (P,): ascending, below `objects`.
 fill
     "surface", "solid" or "auto": src/scene/fill.h.
-rule, thin
-    "touch" or "centre"; "keep" or "drop": src/rules/rule.h.
+rules
+    Shape (O,), by object: 0 touch, 1 centre (src/rules/rule.h).
+thin
+    "keep" or "drop".
 threads
     0 takes as many as the machine has. The result does not depend on it.
 
@@ -372,14 +376,14 @@ NB_MODULE(_native, m) {
         },
         nullptr);
     m.def("voxelize", &voxelize_parts, nb::arg("depth"), nb::arg("meshes"), nb::arg("kinds"), nb::arg("mesh_of"),
-          nb::arg("frames"), nb::arg("materials"), nb::arg("objects_of"), nb::arg("objects"), nb::arg("fill"),
-          nb::arg("rule"), nb::arg("thin"), nb::arg("threads"), kVoxelizeManual);
+          nb::arg("frames"), nb::arg("materials"), nb::arg("objects_of"), nb::arg("rules"), nb::arg("objects"),
+          nb::arg("fill"), nb::arg("thin"), nb::arg("threads"), kVoxelizeManual);
     nb::class_<PythonBlockVoxelizer>(m, "BlockVoxelizer", kBlockVoxelizerManual)
         .def(nb::init<int, std::vector<MeshArrays>, InputOf<uint8_t>, InputOf<int32_t>, InputOf<double>,
-                      InputOf<uint8_t>, InputOf<int32_t>, int, const std::string&, const std::string&,
+                      InputOf<uint8_t>, InputOf<int32_t>, InputOf<uint8_t>, int, const std::string&,
                       const std::string&, int, InputOf<uint8_t>>(),
              nb::arg("depth"), nb::arg("meshes"), nb::arg("kinds"), nb::arg("mesh_of"), nb::arg("frames"),
-             nb::arg("materials"), nb::arg("objects_of"), nb::arg("objects"), nb::arg("fill"), nb::arg("rule"),
+             nb::arg("materials"), nb::arg("objects_of"), nb::arg("rules"), nb::arg("objects"), nb::arg("fill"),
              nb::arg("thin"), nb::arg("threads"), nb::arg("wanted"))
         .def("use_threads", &PythonBlockVoxelizer::use_threads, nb::arg("threads"), "Sets the number of threads.")
         .def("blocks", &PythonBlockVoxelizer::blocks, nb::arg("block_side"),

@@ -16,9 +16,4 @@ enum class Thin : std::uint8_t {
     drop, // nothing
 };
 
-struct VoxelRule {
-    Rule rule = Rule::touch;
-    Thin thin = Thin::keep;
-};
-
 } // namespace voxrt::voxelize

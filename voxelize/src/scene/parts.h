@@ -4,6 +4,7 @@
 #pragma once
 
 #include "../grid/fixed_point.h"
+#include "../rules/rule.h"
 
 #include <cmath>
 #include <span>
@@ -43,6 +44,7 @@ struct PartView {
     const double* frame = nullptr;
     uint8_t material = 0; // the material of the whole part; 0: each triangle has its own
     uint32_t object = 0;  // ascending from part to part
+    Rule rule = Rule::touch;
 };
 
 /// A part reaches beyond kCoordinateLimit, or has a coordinate that is not a number.

@@ -162,7 +162,7 @@ int64_t claim_convex(TileVoxels& tile, RuleTile* rule, const Window& w, const So
             if (rule == nullptr)
                 continue;
             for (int z = 0; z < kBrickSide; ++z) {
-                filled[z] = fill ? filled[z] & mask[z] : mask[z];
+                filled[z] = fill && !rule->fills_all() ? filled[z] & mask[z] : mask[z];
                 was_free[z] &= surface[z];
             }
             rule->add(column, k, filled, surface, was_free);

@@ -5,6 +5,7 @@
 // goes on with the bricks of all tiles.
 #pragma once
 
+#include "../rules/rule.h"
 #include "../rules/rule_brick.h"
 #include "tile_voxels.h"
 
@@ -23,8 +24,12 @@ public:
         owned_.clear();
     }
 
-    /// What is added from now on belongs to an object.
-    void begin(uint32_t object) { object_ = object; }
+    /// What is added from now on belongs to an object, and has its rule.
+    void begin(uint32_t object, Rule rule) {
+        object_ = object;
+        rule_of_part_ = rule;
+    }
+    bool fills_all() const { return rule_of_part_ == Rule::touch; }
 
     /// Bricks from <= k < to of a column are filled, and have no surface.
     void add_full(int column, int from, int to) { filled_.claim_full(column, from, to, kAny); }
@@ -74,6 +79,7 @@ private:
 
     TileVoxels filled_, surface_;
     uint32_t object_ = 0;
+    Rule rule_of_part_ = Rule::touch;
     std::vector<OwnedSurface> owned_; // `code`: the slot in the tile
 };
 

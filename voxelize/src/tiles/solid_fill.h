@@ -30,7 +30,7 @@ struct Claim {
 
 class SolidFill {
 public:
-    /// Where what a rule fills is noted; null for `touch`.
+    /// Where what rules fill is noted; null where all parts have `touch`.
     void use_rule(RuleTile* rule) { rule_ = rule; }
 
     /// Claims the shell alone, which every rule fills.
@@ -209,7 +209,7 @@ private:
                 claim_run(tile, column, k, k + 1, ~uint64_t{0}, interior, result);
                 continue;
             }
-            if (rule_ && mixed) {
+            if (rule_ && !rule_->fills_all() && mixed) {
                 const Slices holds = inside_.inside_at_surface(column, k, surface, numbers_);
                 for (int z = 0; z < kBrickSide; ++z)
                     within[z] |= holds[z];
@@ -242,7 +242,7 @@ private:
         const Slices held = object.held(brick);
         Slices filled;
         for (int z = 0; z < kBrickSide; ++z) {
-            filled[z] = (within[z] | held[z]) & mask[z];
+            filled[z] = rule_->fills_all() ? mask[z] : (within[z] | held[z]) & mask[z];
             claimed[z] &= shell[z];
         }
         rule_->add(column, k, filled, shell, claimed);

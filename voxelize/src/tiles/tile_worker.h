@@ -18,14 +18,14 @@ inline constexpr double kNotedOpening = 0.01;
 
 /// What a thread keeps from tile to tile.
 struct Scratch {
-    Scratch(int side, size_t objects, size_t parts, Rule rule)
-        : surface(side), tile(side), rule(rule == Rule::touch ? nullptr : std::make_unique<RuleTile>(side)),
+    Scratch(int side, size_t objects, size_t parts, bool has_rule)
+        : surface(side), tile(side), rule(has_rule ? std::make_unique<RuleTile>(side) : nullptr),
           object_voxels(objects, 0), shell_of_open(objects, 0), inside_of_open(objects, 0), overlaps_itself(parts, 0) {
-        fill.use_rule(this->rule.get());
+        fill.use_rule(rule.get());
     }
     TileSurface surface;
     TileVoxels tile;
-    std::unique_ptr<RuleTile> rule; // null for `touch`
+    std::unique_ptr<RuleTile> rule; // null where all parts have `touch`
     SolidFill fill;
     TileSorter sorter;
     std::vector<Vertex> vertices;
@@ -67,7 +67,7 @@ public:
                 ++next;
             const BinnedTriangle* triangles = bins_.triangles.data() + i;
             if (s.rule)
-                s.rule->begin(parts_[part].object);
+                s.rule->begin(parts_[part].object, parts_[part].rule);
             if (parts_[part].kind == PartKind::mesh) {
                 add_mesh(part, {triangles, next - i}, window, s);
             } else {
@@ -121,7 +121,7 @@ private:
         const CappedSurface* capped = own ? &*own : analysis.capped.get();
         s.seconds.holes += lap();
         if (fills(fill_))
-            cover<true>(part, analysis, capped, *vertices, triangles, window, s.rule != nullptr, s.surface);
+            cover<true>(part, analysis, capped, *vertices, triangles, window, part.rule != Rule::touch, s.surface);
         else
             cover<false>(part, analysis, capped, *vertices, triangles, window, false, s.surface);
         s.seconds.coverage += lap();

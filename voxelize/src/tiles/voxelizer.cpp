@@ -156,12 +156,12 @@ void report_objects(const std::vector<PartView>& parts, Fill fill, const Triangl
 } // namespace
 
 SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads,
-                      VoxelRule rule) {
+                      Thin thin) {
     SparseVoxels all;
     all.depth = unsigned(depth);
     all.clear();
     SparseVoxels report = voxelize_in_blocks(
-        depth, parts, objects, fill, threads, 1 << depth, [&](SparseVoxels&& block) { all = std::move(block); }, rule);
+        depth, parts, objects, fill, threads, 1 << depth, [&](SparseVoxels&& block) { all = std::move(block); }, thin);
     all.object_voxels = std::move(report.object_voxels);
     all.object_modes = std::move(report.object_modes);
     all.object_notes = std::move(report.object_notes);
@@ -170,8 +170,8 @@ SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t obje
 }
 
 SparseVoxels voxelize_in_blocks(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads,
-                                int block_side, const TakeBlock& take, VoxelRule rule) {
-    BlockVoxelizer voxelizer(depth, parts, objects, fill, threads, rule);
+                                int block_side, const TakeBlock& take, Thin thin) {
+    BlockVoxelizer voxelizer(depth, parts, objects, fill, threads, thin);
     const std::vector<ColumnBlock> blocks = voxelizer.blocks(block_side);
     std::vector<ObjectTally> tallies(objects);
     SparseVoxels report;
@@ -184,9 +184,9 @@ SparseVoxels voxelize_in_blocks(int depth, const std::vector<PartView>& parts, s
 }
 
 struct BlockVoxelizer::State {
-    State(int depth, std::vector<PartView> scene_parts, size_t object_count, Fill how, VoxelRule which, int threads)
+    State(int depth, std::vector<PartView> scene_parts, size_t object_count, Fill how, Thin thin_parts, int threads)
         : depth(unsigned(depth)), side(1 << depth), parts(std::move(scene_parts)), objects(object_count), fill(how),
-          rule(which), workers(threads), scratch(size_t(workers.threads())) {}
+          thin(thin_parts), workers(threads), scratch(size_t(workers.threads())) {}
 
     TileRange tiles_of(const ColumnBlock& block) const {
         const int end = bins.tiles_per_side;
@@ -211,7 +211,7 @@ struct BlockVoxelizer::State {
         const TileWorker worker(parts, bins, side, fill);
         workers.run(tiles.size(), [&](size_t job, int thread) {
             if (!scratch[size_t(thread)])
-                scratch[size_t(thread)] = std::make_unique<Scratch>(side, objects, parts.size(), rule.rule);
+                scratch[size_t(thread)] = std::make_unique<Scratch>(side, objects, parts.size(), has_rule);
             worker.work(tiles[job], uint32_t(job), *scratch[size_t(thread)], found[job]);
         });
         StageSeconds sum;
@@ -253,7 +253,7 @@ struct BlockVoxelizer::State {
     /// The voxels of a block by the rule.
     SparseVoxels ruled(const ColumnBlock& block, std::vector<ObjectTally>& tallies) {
         std::vector<TileResult> found = results(occupied(block), tallies);
-        if (rule.rule == Rule::touch)
+        if (!has_rule)
             return gathered(std::move(found));
         RuleFindings findings;
         auto take_findings = [&](std::vector<TileResult>& from) {
@@ -283,8 +283,7 @@ struct BlockVoxelizer::State {
         const auto brick = [](int tile) { return uint32_t(tile) * kTileBricks; };
         std::vector<int64_t> lost(objects, 0);
         apply_rule(voxels, beside.empty() ? voxels : around, std::move(findings),
-                   {brick(range.x0), brick(range.x1 + 1), brick(range.y0), brick(range.y1 + 1)}, rule.thin, lost,
-                   workers);
+                   {brick(range.x0), brick(range.x1 + 1), brick(range.y0), brick(range.y1 + 1)}, thin, lost, workers);
         for (size_t i = 0; i < objects; ++i)
             tallies[i].voxels -= lost[i];
         seconds.fill += lap();
@@ -296,7 +295,8 @@ struct BlockVoxelizer::State {
     std::vector<PartView> parts;
     size_t objects;
     Fill fill;
-    VoxelRule rule;
+    Thin thin;
+    bool has_rule = false; // some part has another rule than `touch`
     Workers workers;
     TriangleBins bins;
     std::vector<std::unique_ptr<Scratch>> scratch;
@@ -305,9 +305,11 @@ struct BlockVoxelizer::State {
 };
 
 BlockVoxelizer::BlockVoxelizer(int depth, std::vector<PartView> parts, size_t objects, Fill fill, int threads,
-                               VoxelRule rule, std::span<const uint8_t> wanted)
-    : state_(std::make_unique<State>(depth, std::move(parts), objects, fill, rule, threads)) {
+                               Thin thin, std::span<const uint8_t> wanted)
+    : state_(std::make_unique<State>(depth, std::move(parts), objects, fill, thin, threads)) {
     State& s = *state_;
+    for (const PartView& part : s.parts)
+        s.has_rule |= part.rule != Rule::touch;
     s.bins = bin_triangles(s.parts, wanted, s.side, fill, s.workers);
     s.seconds.bin = s.bins.seconds;
     s.seconds.analysis = s.lap() - s.bins.seconds;
@@ -342,7 +344,7 @@ std::vector<uint8_t> BlockVoxelizer::objects_of(const ColumnBlock& block) const 
     const TriangleBins& bins = state_->bins;
     std::vector<uint8_t> found(state_->objects, 0);
     std::vector<uint32_t> tiles = state_->occupied(block);
-    if (state_->rule.rule != Rule::touch) {
+    if (state_->has_rule) {
         const std::vector<uint32_t> beside = state_->occupied_around(block);
         tiles.insert(tiles.end(), beside.begin(), beside.end());
     }
@@ -358,7 +360,7 @@ SparseVoxels BlockVoxelizer::block(const ColumnBlock& block, std::vector<ObjectT
 
 SparseVoxels BlockVoxelizer::last_block(const ColumnBlock& block, std::vector<ObjectTally>& tallies,
                                         SparseVoxels& report) {
-    if (state_->rule.rule != Rule::touch) {
+    if (state_->has_rule) {
         SparseVoxels last = state_->ruled(block, tallies);
         report = this->report(tallies);
         return last;

@@ -44,12 +44,12 @@ namespace voxrt::voxelize {
 
 /// Voxelizes `parts`, ascending by object, on a grid of 2^depth voxels per side.
 ///
-/// `depth` is 1 … 16, `objects` is above the object of every part. `fill`: fill.h. `rule`: rule.h. `threads`: 0 takes
+/// `depth` is 1 … 16, `objects` is above the object of every part. `fill`: fill.h. `thin`: rule.h. `threads`: 0 takes
 /// as many as the machine has; the result does not depend on it. The arguments are not checked. Throws OutOfRange
 /// (parts.h), std::length_error where the tiles would list 2^32 triangles or more, and what the caller's interrupt
 /// check throws (interrupt.h).
 SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads,
-                      VoxelRule rule = {});
+                      Thin thin = Thin::keep);
 
 /// Receives the voxels of a block, all that no other block has; its lists of objects are empty.
 using TakeBlock = std::function<void(SparseVoxels&&)>;
@@ -58,7 +58,7 @@ using TakeBlock = std::function<void(SparseVoxels&&)>;
 /// order. Only one block's voxels are in memory at a time. `take` is called for blocks with geometry; octree::Assembly
 /// joins their octrees. Returns what became of the objects, without voxels.
 SparseVoxels voxelize_in_blocks(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads,
-                                int block_side, const TakeBlock& take, VoxelRule rule = {});
+                                int block_side, const TakeBlock& take, Thin thin = Thin::keep);
 
 /// A square of columns over the grid's whole height: its lowest column, and columns per side.
 struct ColumnBlock {
@@ -85,8 +85,8 @@ struct ObjectTally {
 class BlockVoxelizer {
 public:
     /// `wanted`: by object, 0 where it is left out, for blocks that it does not reach; empty for all objects.
-    BlockVoxelizer(int depth, std::vector<PartView> parts, size_t objects, Fill fill, int threads, VoxelRule rule = {},
-                   std::span<const uint8_t> wanted = {});
+    BlockVoxelizer(int depth, std::vector<PartView> parts, size_t objects, Fill fill, int threads,
+                   Thin thin = Thin::keep, std::span<const uint8_t> wanted = {});
     ~BlockVoxelizer();
 
     /// Sets the number of threads; 0 takes as many as the machine has.

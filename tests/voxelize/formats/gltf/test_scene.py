@@ -258,6 +258,7 @@ def test_voxrt_collider_stands_in_for_the_mesh(tmp_path):
     ("extras", "message"),
     [
         ({"voxrt_colider": "box"}, r"nodes\[0\]\.extras\.voxrt_colider: unknown property for voxrt; did you "),
+        ({"voxrt_rule": "center"}, r"nodes\[0\]\.extras\.voxrt_rule: invalid enum value 'center'; correct the"),
         ({"voxrt_collider": "cone"}, r"nodes\[0\]\.extras\.voxrt_collider: invalid enum value 'cone'; correct the"),
         ({"voxrt_reflect": "yes"}, r"nodes\[0\]\.extras\.voxrt_reflect: expected `bool \| float`, got `str`"),
         ({"voxrt_material": 3}, r"nodes\[0\]\.extras\.voxrt_material: expected `str \| null`, got `int`"),
@@ -309,3 +310,11 @@ def test_primitives_without_positions_are_counted(tmp_path):
     scene = load(writer.save(tmp_path / "a.glb"))
     assert len(scene.objects[0].mesh.triangles) == 3
     assert kinds(scene)["no-positions"] == 1
+
+
+def test_voxrt_rule_is_the_rule_of_the_object(tmp_path):
+    writer = two_coloured()
+    writer.show(mesh=0, name="own", extras={"voxrt_rule": "centre"})
+    writer.show(mesh=0, name="other")
+    scene = load(writer.save(tmp_path / "a.glb"))
+    assert [(one.name, one.rule) for one in scene.objects] == [("own", "centre"), ("other", None)]
