@@ -33,7 +33,7 @@ DEPTH, SIZE, FINER, SKY_RAYS = 8, (240, 180), 2, 48
 LEAST, MOST = 0.8, 1.25
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 _ON_SHEET = 10
-_NAMES = """
+NAMES = """
 gltf/trimesh/CesiumMilkTruck.glb
 gltf/trimesh/no_indices_3storybuilding.glb
 gltf/trimesh/nested.glb
@@ -96,8 +96,8 @@ def pictures(path: Path) -> tuple[np.ndarray, dict[str, np.ndarray], np.ndarray,
     shown, solid = {}, {}
     for name, rom, lighting in (("faces", plain.rom, Lighting()), ("--bake", baked.rom, Lighting(flat=True))):
         frame = voxrt.render(rom, camera, size=fine, engine="model", lighting=lighting)
-        shown[name] = srgb_from_linear(_coarser(linear_from_srgb(frame.colour)))
-        solid[name] = _coarser((frame.material != 0).astype(float)[..., None])[..., 0] > 1 - 1e-9
+        shown[name] = srgb_from_linear(coarser(linear_from_srgb(frame.colour)))
+        solid[name] = coarser((frame.material != 0).astype(float)[..., None])[..., 0] > 1 - 1e-9
     assert plain.rom.grid is not None
     reference = Reference(voxrt.load(path, allow_outside=True), plain.rom.grid)
     ways = pixel_directions(camera, fine).reshape(-1, 3).astype(np.float64)
@@ -106,12 +106,12 @@ def pictures(path: Path) -> tuple[np.ndarray, dict[str, np.ndarray], np.ndarray,
     background = linear_from_srgb(np.array(plain.rom.materials[0].colour))
     colour, hit = reference.shade(origins, ways, Daylight(), background, SKY_RAYS)
     height, width = fine[1], fine[0]
-    picture = srgb_from_linear(_coarser(np.clip(colour, 0, 1).reshape(height, width, 3)))
-    covered = _coarser(hit.astype(float).reshape(height, width, 1))[..., 0] > 1 - 1e-9
+    picture = srgb_from_linear(coarser(np.clip(colour, 0, 1).reshape(height, width, 3)))
+    covered = coarser(hit.astype(float).reshape(height, width, 1))[..., 0] > 1 - 1e-9
     return picture, shown, covered, solid
 
 
-def _coarser(pixels: np.ndarray) -> np.ndarray:
+def coarser(pixels: np.ndarray) -> np.ndarray:
     height, width, channels = pixels.shape
     return pixels.reshape(height // FINER, FINER, width // FINER, FINER, channels).mean(axis=(1, 3))
 
@@ -144,7 +144,7 @@ def main() -> None:
     parser.add_argument("--pictures", type=Path, help="folder for the pictures of each asset")
     options = parser.parse_args()
     lines, kept, within = [], [], {"faces": 0, "--bake": 0}
-    for name in _NAMES.split():
+    for name in NAMES.split():
         if options.only not in name or not (ASSETS / name).exists():
             continue
         try:

@@ -126,3 +126,11 @@ def test_figures_of_the_tutorial():
     assert shows(line.split("differ,")[1], measured["cycles per pixel"])
     solid = next(line for line in text.splitlines() if line.startswith("  solid"))
     assert shows(solid, measured["solid voxels"])
+
+
+def test_likeness_of_the_rules():
+    """Docs/voxels.md: on how many assets `centre` looks nearer."""
+    row = row_of("rule_likeness.md", "| rule | at |", "centre", "equal words")
+    by_ssim, by_psnr = (cell.split(" of ")[0] for cell in row[2:4])
+    text = (ROOT / "docs" / "voxels.md").read_text()
+    assert f"on {by_ssim} of 40 assets by SSIM, on {by_psnr} by PSNR" in " ".join(text.split())

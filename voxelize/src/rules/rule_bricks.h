@@ -54,10 +54,10 @@ public:
     /// The number of the brick with a code, or kEmpty or kFull where none is listed.
     uint32_t find(uint64_t code) const {
         for (size_t at = hash(code);; at = (at + 1) & (table_.size() - 1)) {
-            if (table_[at] == kEmpty)
+            if (table_[at].number == kEmpty)
                 return find_octant(voxels_, code) < voxels_.octant_codes.size() ? kFull : kEmpty;
-            if (bricks_[table_[at]].code == code)
-                return table_[at];
+            if (table_[at].code == code)
+                return table_[at].number;
         }
     }
 
@@ -89,7 +89,15 @@ public:
     }
 
 private:
-    size_t hash(uint64_t code) const { return size_t(code * 0x9E37'79B9'7F4A'7C15 >> shift_); }
+    struct Entry {
+        uint64_t code = 0;
+        uint32_t number = kEmpty;
+    };
+
+    /// Bricks of one cube of 8 x 8 x 8 are near one another: one is often looked for after the other.
+    size_t hash(uint64_t code) const {
+        return (size_t((code >> 9) * 0x9E37'79B9'7F4A'7C15 >> shift_) + size_t(code & 511)) & (table_.size() - 1);
+    }
 
     static void sort(std::vector<RuleBrick>& bricks) {
         std::sort(bricks.begin(), bricks.end(), [](const auto& a, const auto& b) { return a.code < b.code; });
@@ -101,12 +109,12 @@ private:
         while (size_t{1} << bits < 2 * bricks_.size())
             ++bits;
         shift_ = 64 - bits;
-        table_.assign(size_t{1} << bits, kEmpty);
+        table_.assign(size_t{1} << bits, Entry{});
         for (size_t i = 0; i < bricks_.size(); ++i) {
             size_t at = hash(bricks_[i].code);
-            while (table_[at] != kEmpty)
+            while (table_[at].number != kEmpty)
                 at = (at + 1) & (table_.size() - 1);
-            table_[at] = uint32_t(i);
+            table_[at] = {bricks_[i].code, uint32_t(i)};
         }
     }
 
@@ -144,7 +152,7 @@ private:
 
     const SparseVoxels& voxels_;
     std::vector<RuleBrick> bricks_; // by code
-    std::vector<uint32_t> table_;   // open addressing: numbers of bricks
+    std::vector<Entry> table_;      // open addressing
     int shift_ = 60;
 };
 

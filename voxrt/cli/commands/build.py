@@ -65,7 +65,8 @@ def _build_all(command: BuildCommand) -> None:
         seconds["rest"] = max(0.0, perf_counter() - begun - sum(result.seconds.values()))
         waited = 0.0
         warn(result.warnings)
-        if result.budget is not None and (loss := budget_loss(result.budget)):
+        by_touch = command.options.rule == "touch"
+        if result.budget is not None and (loss := budget_loss(result.budget, by_touch=by_touch)):
             warn((voxrt.SceneWarning("budget", loss),))
         if command.reporting.json:
             from voxrt.cli.results.build_results import build_report  # noqa: PLC0415 - most builds print a summary

@@ -124,14 +124,15 @@ def cache_cost(cost: CacheCost, pixels: int) -> str:
     )
 
 
-def budget_loss(budget: BudgetFit) -> str:
-    """Say what a memory that does not fit gives up, and which depth does; nothing if it gives up little."""
+def budget_loss(budget: BudgetFit, *, by_touch: bool = False) -> str:
+    """Say what a memory that does not fit gives up, and what looks nearer; nothing if it gives up little."""
     if budget.lossless is None:
         return ""
     depth, words = budget.lossless
+    nearer = "; coarse voxels look nearer to the source with --rule centre" if by_touch else ""
     return (
         f"{budget.words:,} words give up {budget.fit.percent_changed:.0f} % of the surface; "
-        f"--depth {depth} fits without loss, in {words:,} words"
+        f"--depth {depth} fits without loss, in {words:,} words{nearer}"
     )
 
 
