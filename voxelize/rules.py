@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal, TypeAlias, get_args
 
-Rule: TypeAlias = Literal["touch", "centre"]
+Rule: TypeAlias = Literal["touch", "centre", "half"]
 Thin: TypeAlias = Literal["keep", "drop"]
 RULES: tuple[Rule, ...] = get_args(Rule)
 THIN_CHOICES: tuple[Thin, ...] = get_args(Thin)

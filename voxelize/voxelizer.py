@@ -52,7 +52,9 @@ def voxelize(
         exceed 5 % of their area together, as those of clothes do.
     rule
         ``"touch"``: a voxel is solid when an object's closed solid overlaps its interior at all. ``"centre"``: when its
-        centre lies in an object's closed solid. A surface that encloses nothing keeps each voxel that it touches.
+        centre lies in an object's closed solid. ``"half"``: when the volumes of the objects in it add up to half of it;
+        surfaces with holes, balls and ellipsoids go by their centres. A surface that encloses nothing keeps each voxel
+        that it touches.
         Objects with a rule of their own keep that.
     thin
         What becomes of parts too thin for the rule. ``"keep"``: they keep some of the voxels that they touch, so that

@@ -228,3 +228,34 @@ def test_objects_keep_rules_of_their_own(tmp_path):
         ]
     scene = load(tmp_path / "scene.toml")
     assert [one.voxels for one in voxelize(scene, Grid(4, (-4.0, -4.0, -4.0), 1.0), rule="centre").objects] == [8, 8]
+
+
+@pytest.mark.parametrize(
+    ("low", "high"),
+    [
+        ((2.5, 3.5, 4.5), (40.5, 50.5, 60.5)),
+        ((2.25, 3, 4), (40.75, 50, 60)),
+        ((-3000.5, -70000, 4.5), (40.5, 65000, 60.5)),
+    ],
+)
+def test_halves_of_a_box_count(low, high):
+    """Faces in the middle of voxels; edges there have a quarter, corners an eighth. Triangles of any size."""
+    grid = Grid(6, (0.0, 0.0, 0.0), 1.0)
+    mesh = box_mesh(low, high)
+    at = np.stack(np.meshgrid(*[np.arange(64)] * 3, indexing="ij"), axis=-1)
+    fraction = np.clip(np.minimum(at + 1, high) - np.maximum(at, low), 0, 1).prod(-1)
+    wanted = fraction >= 0.5
+    for scene in (
+        one_object(mesh),
+        scene_of(SceneObject("box", mesh, np.eye(4), (BoxCollider(low, high, pow2=False),), 2)),
+    ):
+        made = dense(voxelize(scene, grid, rule="half", thin="drop").voxels) != 0
+        np.testing.assert_array_equal(made, wanted)
+
+
+def test_two_solids_that_share_a_side_leave_no_crack():
+    grid = Grid(5, (0.0, 0.0, 0.0), 1.0)
+    scene = scene_of(box_mesh((2, 2, 2), (9.3, 30, 30), 1), box_mesh((9.3, 2, 2), (30, 30, 30), 2))
+    voxels = dense(voxelize(scene, grid, rule="half").voxels)
+    assert np.count_nonzero(voxels) == 28**3
+    assert (voxels[2:30, 2:30, 2:30] != 0).all()

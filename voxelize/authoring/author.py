@@ -122,7 +122,7 @@ class Author:
         pow2
             Whether a box collider is rounded up to powers of two voxels.
         rule
-            Which voxels it fills: ``"touch"`` or ``"centre"``; None for what the build says.
+            Which voxels it fills: ``"touch"``, ``"centre"`` or ``"half"``; None for what the build says.
 
         Raises
         ------

@@ -81,7 +81,7 @@ class BuildOptions:
         manifest="always")
     rule: Rule = option(one_of(RULES), "touch", CONTENT,
         "Which voxels of solids are filled. touch: all that a solid touches, which makes objects fat. centre: those "
-        "whose centre is in a solid.",
+        "whose centre is in a solid. half: those that solids fill by half.",
         details="A surface that encloses nothing keeps each voxel that it touches.", manifest="always")
     thin: Thin = option(one_of(THIN_CHOICES), "keep", CONTENT,
         "Parts too thin for {rule}. keep: some of the voxels that they touch stay, so that none gets lost or breaks. "

@@ -128,7 +128,7 @@ void fuzz_one(std::span<const uint8_t> data) {
     for (size_t p = 0; p < kinds.size(); ++p) {
         const MeshView* view = kinds[p] == PartKind::mesh ? &views[bytes.upto(255) % views.size()] : nullptr;
         parts.push_back({kinds[p], view, frames[p].data(), uint8_t(view ? bytes.upto(2) : 1 + bytes.upto(2)), object,
-                         Rule(bytes.upto(1))});
+                         Rule(bytes.upto(2))});
         object += bytes.upto(1);
     }
     try {

@@ -178,10 +178,10 @@ bool agree(const Scene& scene, int depth) {
     const Parts held(scene);
     std::vector<PartView> parts = held.get();
     for (const Fill fill : {Fill::surface, Fill::solid, Fill::automatic})
-        for (const int choice : {0, 1, 2, 3}) { // all by touch; by centre; each second part; thin parts dropped
+        for (const int choice : {0, 1, 2, 3}) { // all by touch; by centre; by all three; by half, thin parts dropped
             const Thin thin = choice == 3 ? Thin::drop : Thin::keep;
             for (size_t p = 0; p < parts.size(); ++p)
-                parts[p].rule = choice == 1 || choice == 3 || (choice == 2 && p % 2 == 0) ? Rule::centre : Rule::touch;
+                parts[p].rule = choice == 2 ? Rule(p % 3) : choice == 3 ? Rule::half : Rule(choice);
             const uint64_t alone = fingerprint(voxelize(depth, parts, parts.size(), fill, 1, thin));
             if (alone != fingerprint(voxelize(depth, parts, parts.size(), fill, 3, thin))) {
                 std::printf("depth %d: the result depends on the number of threads\n", depth);

@@ -125,7 +125,7 @@ class Node(_Table, frozen=True, kw_only=True):
     collider, pow2
         The collider to voxelize in its place, and whether a box is rounded up to powers of two voxels.
     rule
-        Which voxels it fills: ``touch`` or ``centre``.
+        Which voxels it fills: ``touch``, ``centre`` or ``half``.
     """
 
     name: str | None = None

@@ -112,6 +112,8 @@ public:
         require(depth >= 1 && depth <= 16, "depth must be 1 … 16");
         require(objects >= 0, "objects must not be negative");
         require(rules.ndim() == 1 && rules.size() == size_t(objects), "rules must have an element per object");
+        require(std::all_of(rules.data(), rules.data() + rules.size(), [](uint8_t rule) { return rule <= 2; }),
+                "rules must be 0 … 2");
         const size_t count = kinds.size();
         require(kinds.ndim() == 1 && mesh_of.ndim() == 1 && materials.ndim() == 1 && objects_of.ndim() == 1 &&
                     mesh_of.size() == count && materials.size() == count && objects_of.size() == count,
@@ -138,7 +140,7 @@ public:
             require(objects_of.data()[p] >= 0 && objects_of.data()[p] < objects, "objects_of must be below objects");
             require(p == 0 || objects_of.data()[p - 1] <= objects_of.data()[p], "objects_of must ascend");
             parts.push_back({kind, mesh, frames_.data() + 12 * p, materials.data()[p], uint32_t(objects_of.data()[p]),
-                             rules.data()[objects_of.data()[p]] == 0 ? Rule::touch : Rule::centre});
+                             static_cast<Rule>(rules.data()[objects_of.data()[p]])});
         }
     }
     SceneParts(const SceneParts&) = delete;
@@ -304,7 +306,7 @@ objects_of
 fill
     "surface", "solid" or "auto": src/scene/fill.h.
 rules
-    Shape (O,), by object: 0 touch, 1 centre (src/rules/rule.h).
+    Shape (O,), by object: 0 touch, 1 centre, 2 half (src/rules/rule.h).
 thin
     "keep" or "drop".
 threads
@@ -380,8 +382,8 @@ NB_MODULE(_native, m) {
           nb::arg("fill"), nb::arg("thin"), nb::arg("threads"), kVoxelizeManual);
     nb::class_<PythonBlockVoxelizer>(m, "BlockVoxelizer", kBlockVoxelizerManual)
         .def(nb::init<int, std::vector<MeshArrays>, InputOf<uint8_t>, InputOf<int32_t>, InputOf<double>,
-                      InputOf<uint8_t>, InputOf<int32_t>, InputOf<uint8_t>, int, const std::string&,
-                      const std::string&, int, InputOf<uint8_t>>(),
+                      InputOf<uint8_t>, InputOf<int32_t>, InputOf<uint8_t>, int, const std::string&, const std::string&,
+                      int, InputOf<uint8_t>>(),
              nb::arg("depth"), nb::arg("meshes"), nb::arg("kinds"), nb::arg("mesh_of"), nb::arg("frames"),
              nb::arg("materials"), nb::arg("objects_of"), nb::arg("rules"), nb::arg("objects"), nb::arg("fill"),
              nb::arg("thin"), nb::arg("threads"), nb::arg("wanted"))

@@ -28,10 +28,16 @@ struct ShellBrick {
     uint32_t cells = kNone;       // row of materials where the shell has several
     uint32_t transparent = kNone; // row of voxels with fully transparent surface, where there is some
     uint32_t held = kNone;        // row of voxels that the surface fills under every rule, where there are some
+    uint32_t pieces = kNone;      // row of what triangles add to volumes, where it is wanted
     uint8_t material = 0;         // the shell's only material, else 0
     bool crossed = false;         // enters or leaves may hold something
     bool has_repeated = false;    // crossings of this brick are in the list of repeated ones too
     bool has_shell() const { return material != 0 || cells != kNone; }
+};
+
+/// What the triangles of a brick add to volumes, by slice and bit (volume_pieces.h).
+struct VolumePieces {
+    std::array<double, kBrickVoxels> area{}, volume{};
 };
 
 /// A crossing whose bit is already set.
@@ -58,6 +64,7 @@ public:
         bricks_.clear();
         cells_.clear();
         rows_.clear();
+        pieces_.clear();
         repeated_.clear();
         x_ = x;
         y_ = y;
@@ -122,6 +129,19 @@ public:
                       uint64_t{1} << (at_column.shift + (z & (kBrickSide - 1))), enters);
     }
 
+    /// Receives from add_pieces what a triangle adds to the volume of voxel z, and to each above.
+    void add_piece(int x, int y, int z, double area, double volume) {
+        ShellBrick& brick = at(locate(x, y).column, z >> kBrickBits);
+        if (brick.pieces == kNone) {
+            brick.pieces = uint32_t(pieces_.size());
+            pieces_.emplace_back();
+        }
+        VolumePieces& pieces = pieces_[brick.pieces];
+        const auto place = size_t((z & (kBrickSide - 1)) * 64 + column_bit(x - x_, y - y_));
+        pieces.area[place] += area;
+        pieces.volume[place] += volume;
+    }
+
     /// Brick `k` (along z) of a brick column, or null.
     ShellBrick* find(int column, int k) {
         const uint32_t index = table_[size_t(column) * height_ + k];
@@ -161,6 +181,7 @@ public:
     const std::vector<RepeatedCrossing>& repeated_crossings() const { return repeated_; }
     uint32_t index_of(const ShellBrick& brick) const { return uint32_t(&brick - bricks_.data()); }
     const Cells& cells(uint32_t row) const { return cells_[row]; }
+    const VolumePieces& pieces(uint32_t row) const { return pieces_[row]; }
 
     /// The voxels of a brick that have surface: its shell, and what is fully transparent.
     Slices all_surface(const ShellBrick& brick, const Slices& shell) const {
@@ -243,6 +264,7 @@ private:
     std::vector<ShellBrick> bricks_;
     std::vector<uint32_t> slots_;
     std::vector<Cells> cells_;
+    std::vector<VolumePieces> pieces_;
     std::vector<Slices> rows_; // of voxels with transparent surface, and of voxels held
     std::vector<RepeatedCrossing> repeated_;
 };

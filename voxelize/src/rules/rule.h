@@ -8,6 +8,7 @@ namespace voxrt::voxelize {
 enum class Rule : std::uint8_t {
     touch,  // all: the closed solid meets the voxel's interior
     centre, // those whose centre lies in the closed solid; a surface without inside fills what it touches
+    half,   // those where the volumes of solids add up to half of the voxel; surfaces with holes, balls: as centre
 };
 
 /// What becomes of parts that are too thin for a rule.

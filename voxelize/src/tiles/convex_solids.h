@@ -29,6 +29,18 @@ struct AxisBox {
         return span;
     }
 
+    /// How much of a voxel it fills.
+    double volume(int x, int y, int z) const {
+        const int at[3] = {x, y, z};
+        double product = 1;
+        for (int axis = 0; axis < 3; ++axis) {
+            const int64_t low = std::max(min[axis], at[axis] * kUnit),
+                          high = std::min(max[axis], (at[axis] + 1) * kUnit);
+            product *= static_cast<double>(std::max<int64_t>(high - low, 0)) / kUnit;
+        }
+        return product;
+    }
+
     /// The voxels of a column whose centres are within.
     ColumnSpan centres(int x, int y, int /*top*/) const {
         auto holds = [this](int cell, int axis) {
@@ -161,6 +173,19 @@ int64_t claim_convex(TileVoxels& tile, RuleTile* rule, const Window& w, const So
             claimed += tile.claim(column, k, mask, material, nullptr, rule != nullptr ? &was_free : nullptr);
             if (rule == nullptr)
                 continue;
+            if constexpr (requires { solid.volume(0, 0, 0); })
+                if (fill && rule->asks_for_volumes()) {
+                    std::array<double, kBrickVoxels> volumes;
+                    for (int z = 0; z < kBrickSide; ++z) {
+                        filled[z] = mask[z] & ~surface[z];
+                        for (uint64_t left = surface[z]; left != 0; left &= left - 1) {
+                            const int bit = std::countr_zero(left);
+                            volumes[size_t(z * 64 + bit)] =
+                                solid.volume(cx + column_x(bit), cy + column_y(bit), k * kBrickSide + z);
+                        }
+                    }
+                    rule->add_volumes(column, k, surface, volumes);
+                }
             for (int z = 0; z < kBrickSide; ++z) {
                 filled[z] = fill && !rule->fills_all() ? filled[z] & mask[z] : mask[z];
                 was_free[z] &= surface[z];

@@ -22,6 +22,10 @@ public:
         filled_.clear();
         surface_.clear();
         owned_.clear();
+        for (const size_t slot : summed_)
+            sum_rows_[slot] = kNone;
+        summed_.clear();
+        sums_.clear();
     }
 
     /// What is added from now on belongs to an object, and has its rule.
@@ -30,6 +34,7 @@ public:
         rule_of_part_ = rule;
     }
     bool fills_all() const { return rule_of_part_ == Rule::touch; }
+    bool asks_for_volumes() const { return rule_of_part_ == Rule::half; }
 
     /// Bricks from <= k < to of a column are filled, and have no surface.
     void add_full(int column, int from, int to) { filled_.claim_full(column, from, to, kAny); }
@@ -45,6 +50,24 @@ public:
             owned_.push_back({uint64_t(column) * uint64_t(filled_.height()) + uint64_t(k), object_, claimed});
     }
 
+    /// Adds volumes of the part in voxels of a brick, by slice and bit.
+    void add_volumes(int column, int k, const Slices& voxels, const std::array<double, kBrickVoxels>& volumes) {
+        const size_t slot = size_t(column) * size_t(filled_.height()) + size_t(k);
+        if (sum_rows_.empty())
+            sum_rows_.assign(size_t(kTileColumns) * size_t(filled_.height()), kNone);
+        uint32_t& row = sum_rows_[slot];
+        if (row == kNone) {
+            row = uint32_t(sums_.size());
+            sums_.emplace_back();
+            summed_.push_back(slot);
+        }
+        for (int z = 0; z < kBrickSide; ++z)
+            for (uint64_t left = voxels[z]; left != 0; left &= left - 1) {
+                const auto place = size_t(z * 64 + std::countr_zero(left));
+                sums_[row][place] += volumes[place];
+            }
+    }
+
     /// Appends the bricks of the tile at (tile_x, tile_y), in tiles, and who owns their surface.
     void list(const TileVoxels& tile, int tile_x, int tile_y, std::vector<RuleBrick>& bricks,
               std::vector<OwnedSurface>& owned) const {
@@ -57,6 +80,9 @@ public:
                     continue;
                 const Slices touched = tile.mask_of(slot);
                 Slices filled = filled_.mask_of(*filled_.slots(column, k));
+                const size_t place = size_t(column) * size_t(tile.height()) + size_t(k);
+                if (!summed_.empty() && sum_rows_[place] != kNone)
+                    add_halves(filled, sums_[sum_rows_[place]]);
                 for (int z = 0; z < kBrickSide; ++z)
                     filled[z] &= touched[z];
                 bricks.push_back({code_of(column, k, tile_x, tile_y), touched, filled, surface_.mask_of(surface)});
@@ -71,6 +97,14 @@ public:
 
 private:
     static constexpr uint8_t kAny = 1; // a material: all voxels here have the same
+    // Sums are exact to 2^-41. Volumes whose corners are on the lattice of 1/4096 voxel are 1/2, or differ by 2^-39.
+    static constexpr double kHalf = 0.5 - 0x1p-40;
+
+    static void add_halves(Slices& filled, const std::array<double, kBrickVoxels>& volumes) {
+        for (int z = 0; z < kBrickSide; ++z)
+            for (int bit = 0; bit < 64; ++bit)
+                filled[z] |= uint64_t{volumes[size_t(z * 64 + bit)] >= kHalf} << bit;
+    }
 
     static uint64_t code_of(int column, int k, int tile_x, int tile_y) {
         return morton(uint32_t(tile_x * kTileBricks + column % kTileBricks),
@@ -78,6 +112,9 @@ private:
     }
 
     TileVoxels filled_, surface_;
+    std::vector<uint32_t> sum_rows_; // by slot: where the sums of volumes stand
+    std::vector<size_t> summed_;     // the slots that have some
+    std::vector<std::array<double, kBrickVoxels>> sums_;
     uint32_t object_ = 0;
     Rule rule_of_part_ = Rule::touch;
     std::vector<OwnedSurface> owned_; // `code`: the slot in the tile

@@ -18,6 +18,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace voxrt::voxelize {
 
@@ -54,6 +55,7 @@ public:
     /// Claims the shell and what it encloses. The inside takes the material `interior`.
     Claim claim_solid(TileVoxels& tile, TileSurface& object, uint8_t interior) {
         Claim result;
+        is_capped_ = false;
         sort_repeated(object);
         int lowest[kTileColumns], highest[kTileColumns];
         std::fill_n(lowest, kTileColumns, INT_MAX);
@@ -73,6 +75,7 @@ public:
     Claim claim_capped_solid(TileVoxels& tile, TileSurface& object, uint8_t interior, const CapWinding& caps,
                              const VoxelBox& box, const Window& window) {
         Claim result;
+        is_capped_ = true;
         sort_repeated(object);
         inside_.reset(caps, box, window);
         for (int column = 0; column < kTileColumns; ++column)
@@ -113,25 +116,48 @@ private:
         count_work(20 * uint32_t(object.height()));
         ColumnWinding winding;
         const int slices = std::min(object.side(), kBrickSide);
+        const bool has_volumes = rule_ && rule_->asks_for_volumes();
+        below_.fill(0);
         while (k < object.height()) {
             const ShellBrick* brick = object.find(column, k);
             if (brick == nullptr) {
                 const int end = k > highest ? object.height() : object.next_brick(column, k, highest);
                 claim_run(tile, column, k, end, winding.inside(), interior, result);
+                for (int bit = 0; has_volumes && bit < 64; ++bit)
+                    below_[bit] = winding.at(bit);
                 k = end;
                 continue;
             }
             Slices within{};
+            const Slices surface = has_volumes ? object.all_surface(*brick, slices_of(brick->shell)) : Slices{};
             const Crossings crossings(*brick);
             const uint32_t index = object.index_of(*brick);
             for (int z = 0; z < slices; ++z) {
                 advance(winding, crossings, index, brick->has_repeated, z);
                 within[z] = winding.inside();
+                if (has_volumes)
+                    add_volumes(object, *brick, surface[z], z, winding);
             }
             claim_brick(tile, object, column, k, *brick, within, interior, result);
             ++k;
         }
         result.simple = result.simple && winding.simple();
+    }
+
+    /// Finds the volumes of the voxels of a slice that have surface. Elsewhere the solid fills as many voxels as the
+    /// winding number says, which rounding cannot change.
+    void add_volumes(const TileSurface& object, const ShellBrick& brick, uint64_t surface, int z,
+                     const ColumnWinding& winding) {
+        const VolumePieces* pieces = brick.pieces == kNone ? nullptr : &object.pieces(brick.pieces);
+        for (int bit = 0; bit < 64; ++bit) {
+            const auto place = size_t(z * 64 + bit);
+            if (surface >> bit & 1)
+                volumes_[place] = std::min(std::abs(below_[bit] + (pieces ? pieces->volume[place] : 0)), 1.0);
+            else
+                below_[bit] = winding.at(bit);
+            if (pieces)
+                below_[bit] += pieces->area[place];
+        }
     }
 
     void claim_run(TileVoxels& tile, int column, int from, int to, uint64_t inside, uint8_t interior, Claim& result) {
@@ -240,9 +266,14 @@ private:
         if (!rule_)
             return;
         const Slices held = object.held(brick);
+        const bool by_volume = rule_->asks_for_volumes() && !is_capped_;
+        if (by_volume)
+            rule_->add_volumes(column, k, shell, volumes_);
         Slices filled;
         for (int z = 0; z < kBrickSide; ++z) {
-            filled[z] = rule_->fills_all() ? mask[z] : (within[z] | held[z]) & mask[z];
+            filled[z] = rule_->fills_all() ? mask[z]
+                        : by_volume        ? (hidden[z] | held[z]) & mask[z]
+                                           : (within[z] | held[z]) & mask[z];
             claimed[z] &= shell[z];
         }
         rule_->add(column, k, filled, shell, claimed);
@@ -275,6 +306,9 @@ private:
     }
 
     RuleTile* rule_ = nullptr;
+    bool is_capped_ = false;
+    std::array<double, 64> below_{};             // by column: the volume below the slice, per voxel
+    std::array<double, kBrickVoxels> volumes_{}; // of a brick's voxels with surface
     std::vector<RepeatedCrossing> repeated_;
     GeneralizedInside inside_;
     std::vector<int> numbers_; // winding numbers of the capped surface in a brick, by slice and bit

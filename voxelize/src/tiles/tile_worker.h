@@ -4,6 +4,7 @@
 #include "../coverage/centre_crossings.h"
 #include "../coverage/ellipsoid.h"
 #include "../coverage/material_raster.h"
+#include "../coverage/volume_pieces.h"
 #include "convex_solids.h"
 #include "solid_fill.h"
 #include "tile_order.h"
@@ -42,6 +43,17 @@ public:
     int side() const { return surface_.side(); }
     void cover(int x, int y, int lo, int hi) { surface_.hold(x, y, lo, hi); }
     void cross(int, int, int, bool) {}
+
+private:
+    TileSurface& surface_;
+};
+
+/// Receiver of find_centres for volumes, to which centres mean nothing.
+class CrossingsAlone {
+public:
+    explicit CrossingsAlone(TileSurface& surface) : surface_(surface) {}
+    void cross(int x, int y, int z, bool enters) { surface_.cross(x, y, z, enters); }
+    void hold(int, int, int, int) {}
 
 private:
     TileSurface& surface_;
@@ -187,6 +199,12 @@ private:
                 if (is_shell_only) {
                     HeldSurface held(surface);
                     cover_triangle<false>(a, b, c, window, analysis.inverted, held);
+                } else if (part.rule == Rule::half && !has_caps) {
+                    CrossingsAlone crossings(surface);
+                    if (counts) {
+                        find_centres<true>(a, b, c, window, crossings);
+                        add_pieces(a, b, c, window, surface);
+                    }
                 } else if (counts && !has_caps) {
                     find_centres<true>(a, b, c, window, surface);
                 } else {
