@@ -37,6 +37,7 @@ TASKS = {
     "Build an animation": ("build_animation", "frame_times", "animation_camera", "save_animation"),
     "Voxelize arrays and scenes": (
         "voxelize_mesh", "mesh_scene", "load", "Scene", "SceneWarning", "Material", "fit_grid", "Grid",
+        "volume_fractions", "write_fractions",
     ),
     "Read, write and convert memories": (
         "read_rom", "read_any", "rom_info", "convert", "WRITABLE_SUFFIXES", "Rom", "Octree",

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from voxrt.octree import Rom
     from voxrt.view.octant_mesh import OctantMesh
+    from voxrt.voxelize import Grid
 
 _PLY_FACE = np.dtype([("count", "u1"), ("corners", "<i4", 3), ("colour", "u1", 3)])
 _PLY_HEADER = """ply
@@ -51,6 +52,21 @@ def write_octants(path: Path, grid: pyvista.UnstructuredGrid) -> None:
 
     writer = vtkXMLUnstructuredGridWriter()
     writer.SetInputData(grid)
+    writer.SetDataModeToBinary()
+    writer.WriteToOutputStringOn()
+    writer.Write()
+    write_atomically(path, writer.GetOutputString().encode())
+
+
+def write_image(path: Path, fractions: NDArray[np.float64], grid: Grid) -> None:
+    """Write a number per voxel ([x, y, z]) as a ``.vti`` file for ParaView, in metres, all of it or nothing."""
+    pv: Any = import_module("pyvista")  # optional
+    from vtkmodules.vtkIOXML import vtkXMLImageDataWriter  # noqa: PLC0415 - optional
+
+    image = pv.ImageData(dimensions=np.array(fractions.shape) + 1, spacing=(grid.voxel_size,) * 3, origin=grid.origin)
+    image.cell_data["fraction"] = fractions.ravel(order="F")
+    writer = vtkXMLImageDataWriter()
+    writer.SetInputData(image)
     writer.SetDataModeToBinary()
     writer.WriteToOutputStringOn()
     writer.Write()

@@ -33,6 +33,8 @@ from voxrt.voxelize.scene import SceneObject as SceneObject
 from voxrt.voxelize.scene import Viewpoint as Viewpoint
 from voxrt.voxelize.scene_frames import SceneFrames as SceneFrames
 from voxrt.voxelize.scene_frames import join_scenes as join_scenes
+from voxrt.voxelize.voxel_volumes import VolumeFractions as VolumeFractions
+from voxrt.voxelize.voxel_volumes import volume_fractions as volume_fractions
 from voxrt.voxelize.voxelizer import voxelize as voxelize
 from voxrt.voxelize.voxels import ObjectMode as ObjectMode
 from voxrt.voxelize.voxels import ObjectReport as ObjectReport

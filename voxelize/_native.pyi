@@ -66,6 +66,26 @@ def voxelize(
     threads: int,
 ) -> Voxelized: ...
 
+class VoxelVolumes(NamedTuple):
+    objects: NDArray[np.uint32]
+    codes: NDArray[np.uint64]
+    volumes: NDArray[np.float64]
+    whole: NDArray[np.int64]
+    known: NDArray[np.uint8]
+
+def find_volumes(
+    depth: int,
+    meshes: list[MeshArrays],
+    kinds: NDArray[np.uint8],
+    mesh_of: NDArray[np.int32],
+    frames: NDArray[np.float64],
+    materials: NDArray[np.uint8],
+    objects_of: NDArray[np.int32],
+    rules: NDArray[np.uint8],
+    objects: int,
+    threads: int,
+) -> VoxelVolumes: ...
+
 class VoxelBlock(NamedTuple):
     brick_codes: NDArray[np.uint64]
     brick_masks: NDArray[np.uint64]

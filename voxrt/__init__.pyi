@@ -9,6 +9,8 @@ from voxrt.building.animation import build_animation as build_animation
 from voxrt.building.baking import Bake as Bake
 from voxrt.building.fitting import BudgetFit as BudgetFit
 from voxrt.building.fitting import InteriorFit as InteriorFit
+from voxrt.building.fractions import volume_fractions as volume_fractions
+from voxrt.building.fractions import write_fractions as write_fractions
 from voxrt.building.pipeline import build as build
 from voxrt.building.pipeline import voxelize_mesh as voxelize_mesh
 from voxrt.building.result import BuildResult as BuildResult

@@ -34,6 +34,8 @@ class BuildCommand:
         "Render the view of the preview by the simulated hardware, too, and count the pixels that differ. This is the "
         "default where it takes less than five seconds.", is_rare=True)
     no_check: bool = option(FLAG, False, PREVIEW, "Leave that out.", is_rare=True)
+    fractions: Path | None = option(file("FILE"), None, OUTPUT,
+        "Also write how much of each voxel every object fills: .npz (NumPy) or .vti (ParaView).", is_rare=True)
     profile: bool = option(FLAG, False, RUNNING,
         "Print the time of each stage, with its parts indented below it.", is_rare=True)
     reporting: ReportOptions = nested(ReportOptions)

@@ -95,6 +95,24 @@ public:
         }
     }
 
+    /// Appends the volumes of the last object, and forgets it.
+    void take_volumes(int tile_x, int tile_y, std::vector<VoxelVolume>& volumes) {
+        for (const size_t slot : summed_) {
+            const auto column = int(slot / size_t(filled_.height())), k = int(slot % size_t(filled_.height()));
+            const uint64_t code = code_of(column, k, tile_x, tile_y) << 9;
+            const Slices surface = surface_.mask_of(*surface_.slots(column, k));
+            const Slices whole = filled_.mask_of(*filled_.slots(column, k)); // by another part
+            for (int z = 0; z < kBrickSide; ++z)
+                for (uint64_t left = surface[z] & ~whole[z]; left != 0; left &= left - 1) {
+                    const int bit = std::countr_zero(left);
+                    const uint64_t place = morton(uint32_t(column_x(bit)), uint32_t(column_y(bit)), uint32_t(z));
+                    const double volume = sums_[sum_rows_[slot]][size_t(z * 64 + bit)];
+                    volumes.push_back({object_, code | place, std::min(volume, 1.0)});
+                }
+        }
+        clear();
+    }
+
 private:
     static constexpr uint8_t kAny = 1; // a material: all voxels here have the same
     // Sums are exact to 2^-41. Volumes whose corners are on the lattice of 1/4096 voxel are 1/2, or differ by 2^-39.

@@ -31,6 +31,7 @@ struct TileResult {
     std::vector<CubeRun> runs;
     std::vector<RuleBrick> rule_bricks; // these two for rules other than `touch`
     std::vector<OwnedSurface> owned;
+    std::vector<VoxelVolume> volumes; // where these alone are wanted
 };
 
 class TileSorter {

@@ -67,6 +67,18 @@ public:
     /// `slot`: the place of `out` among the results of a block.
     void work(uint32_t index, uint32_t slot, Scratch& s, TileResult& out) const {
         const int tile_x = int(index) % bins_.tiles_per_side, tile_y = int(index) / bins_.tiles_per_side;
+        for_each_part(index, s, [](uint32_t) {});
+        Stopwatch lap;
+        if (!s.tile.empty())
+            s.sorter.sort(s.tile, slot, tile_x, tile_y, out);
+        if (s.rule)
+            s.rule->list(s.tile, tile_x, tile_y, out.rule_bricks, out.owned);
+        s.seconds.order += lap();
+    }
+
+    /// Claims what the parts of a tile cover. `begin`: called with the object of each part before it is claimed.
+    template <class Begin> void for_each_part(uint32_t index, Scratch& s, Begin begin) const {
+        const int tile_x = int(index) % bins_.tiles_per_side, tile_y = int(index) / bins_.tiles_per_side;
         const Window window{tile_x * kTileSide, std::min(tile_x * kTileSide + kTileSide, side_) - 1, tile_y * kTileSide,
                             std::min(tile_y * kTileSide + kTileSide, side_) - 1, side_ - 1};
         s.tile.clear();
@@ -78,6 +90,7 @@ public:
             while (next < end && bins_.triangles[next].part == part)
                 ++next;
             const BinnedTriangle* triangles = bins_.triangles.data() + i;
+            begin(parts_[part].object);
             if (s.rule)
                 s.rule->begin(parts_[part].object, parts_[part].rule);
             if (parts_[part].kind == PartKind::mesh) {
@@ -89,12 +102,20 @@ public:
             }
             i = next;
         }
-        Stopwatch lap;
-        if (!s.tile.empty())
-            s.sorter.sort(s.tile, slot, tile_x, tile_y, out);
-        if (s.rule)
-            s.rule->list(s.tile, tile_x, tile_y, out.rule_bricks, out.owned);
-        s.seconds.order += lap();
+    }
+
+    /// Finds the volumes of each object in one tile, as if it were alone.
+    void find_volumes(uint32_t index, Scratch& s, TileResult& out) const {
+        const int tile_x = int(index) % bins_.tiles_per_side, tile_y = int(index) / bins_.tiles_per_side;
+        uint32_t last = kNone;
+        for_each_part(index, s, [&](uint32_t object) {
+            if (last != kNone && object != last) {
+                s.rule->take_volumes(tile_x, tile_y, out.volumes);
+                s.tile.clear();
+            }
+            last = object;
+        });
+        s.rule->take_volumes(tile_x, tile_y, out.volumes);
     }
 
 private:

@@ -205,14 +205,18 @@ struct BlockVoxelizer::State {
         return found;
     }
 
-    std::vector<TileResult> results(const std::vector<uint32_t>& tiles, std::vector<ObjectTally>& tallies) {
+    std::vector<TileResult> results(const std::vector<uint32_t>& tiles, std::vector<ObjectTally>& tallies,
+                                    bool volumes = false) {
         lap();
         std::vector<TileResult> found(tiles.size());
         const TileWorker worker(parts, bins, side, fill);
         workers.run(tiles.size(), [&](size_t job, int thread) {
             if (!scratch[size_t(thread)])
                 scratch[size_t(thread)] = std::make_unique<Scratch>(side, objects, parts.size(), has_rule);
-            worker.work(tiles[job], uint32_t(job), *scratch[size_t(thread)], found[job]);
+            if (volumes)
+                worker.find_volumes(tiles[job], *scratch[size_t(thread)], found[job]);
+            else
+                worker.work(tiles[job], uint32_t(job), *scratch[size_t(thread)], found[job]);
         });
         StageSeconds sum;
         for (const auto& s : scratch)
@@ -377,6 +381,37 @@ SparseVoxels BlockVoxelizer::report(const std::vector<ObjectTally>& tallies) con
     out.depth = state_->depth;
     out.clear();
     report_objects(state_->parts, state_->fill, state_->bins, tallies, out);
+    return out;
+}
+
+ObjectVolumes find_volumes(int depth, std::vector<PartView> parts, size_t objects, int threads) {
+    for (PartView& part : parts)
+        part.rule = Rule::half;
+    BlockVoxelizer voxelizer(depth, parts, objects, Fill::solid, threads);
+    return voxelizer.volumes();
+}
+
+ObjectVolumes BlockVoxelizer::volumes() {
+    State& s = *state_;
+    ObjectVolumes out;
+    out.known.assign(s.objects, 1);
+    for (size_t p = 0; p < s.parts.size(); ++p) {
+        const PartKind kind = s.parts[p].kind;
+        if (kind == PartKind::ball || kind == PartKind::ellipsoid ||
+            (kind == PartKind::mesh && !s.bins.meshes[p].closed))
+            out.known[s.parts[p].object] = 0;
+    }
+    std::vector<ObjectTally> tallies(s.objects);
+    for (TileResult& tile : s.results(s.occupied({0, 0, s.side}), tallies, true))
+        out.voxels.insert(out.voxels.end(), tile.volumes.begin(), tile.volumes.end());
+    std::erase_if(out.voxels, [&](const VoxelVolume& v) { return !out.known[v.object]; });
+    std::sort(out.voxels.begin(), out.voxels.end(), [](const VoxelVolume& a, const VoxelVolume& b) {
+        return a.object != b.object ? a.object < b.object : a.code < b.code;
+    });
+    for (const ObjectTally& tally : tallies)
+        out.whole.push_back(tally.voxels);
+    for (const VoxelVolume& v : out.voxels)
+        --out.whole[v.object];
     return out;
 }
 

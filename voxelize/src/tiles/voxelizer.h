@@ -31,6 +31,7 @@
 
 #include "../grid/sparse_voxels.h"
 #include "../rules/rule.h"
+#include "../rules/rule_brick.h"
 #include "../scene/fill.h"
 #include "../scene/object_mode.h"
 #include "../scene/parts.h"
@@ -50,6 +51,16 @@ namespace voxrt::voxelize {
 /// check throws (interrupt.h).
 SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads,
                       Thin thin = Thin::keep);
+
+/// Which part of each voxel with surface an object fills, whatever other objects there are.
+struct ObjectVolumes {
+    std::vector<VoxelVolume> voxels; // by object, then by code
+    std::vector<int64_t> whole;      // by object: voxels that it fills and that have no surface of it
+    std::vector<uint8_t> known;      // by object: 0 where it has surfaces with openings, balls or ellipsoids
+};
+
+/// Finds the volumes of objects. Arguments and errors are those of voxelize(); the rules of parts do not matter.
+ObjectVolumes find_volumes(int depth, std::vector<PartView> parts, size_t objects, int threads);
 
 /// Receives the voxels of a block, all that no other block has; its lists of objects are empty.
 using TakeBlock = std::function<void(SparseVoxels&&)>;
@@ -106,6 +117,9 @@ public:
 
     /// What became of the objects, without voxels. `tallies`: of all blocks, whoever made them.
     SparseVoxels report(const std::vector<ObjectTally>& tallies) const;
+
+    /// The volumes of objects whose parts all have the rule `half`.
+    ObjectVolumes volumes();
 
     /// Wall seconds so far.
     const StageSeconds& seconds() const;

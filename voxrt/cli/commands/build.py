@@ -57,6 +57,12 @@ def run(command: BuildCommand) -> None:
 def _build_all(command: BuildCommand) -> None:
     """Build assets one after another, or the animation of all, and say what was made."""
     reports = []
+    if command.fractions is not None:
+        from voxrt.building.fractions import check_fractions_file  # noqa: PLC0415 - most builds write none
+
+        check_fractions_file(command.fractions)
+        if len(command.assets) > 1:
+            raise UsageError("--fractions is of one asset; build them one by one")
     waited = process_age()
     for asset in command.assets if command.frames is None else command.assets[:1]:
         begun = perf_counter()
@@ -68,6 +74,8 @@ def _build_all(command: BuildCommand) -> None:
         by_touch = command.options.rule == "touch"
         if result.budget is not None and (loss := budget_loss(result.budget, by_touch=by_touch)):
             warn((voxrt.SceneWarning("budget", loss),))
+        if command.fractions is not None:
+            _write_fractions(result, command)
         if command.reporting.json:
             from voxrt.cli.results.build_results import build_report  # noqa: PLC0415 - most builds print a summary
 
@@ -87,6 +95,23 @@ def _build_all(command: BuildCommand) -> None:
         print_json(reports[0] if len(reports) == 1 else reports)
 
 
+def _write_fractions(result: voxrt.BuildResult, command: BuildCommand) -> None:
+    from voxrt.building.fractions import write_fractions  # noqa: PLC0415 - most builds write none
+    from voxrt.voxelize import volume_fractions  # noqa: PLC0415
+
+    assert command.fractions is not None
+    assert result.rom.grid is not None
+    options = command.options
+    found = volume_fractions(
+        result.scene, result.rom.grid, geometry=options.geometry, pow2=options.pow2, threads=options.threads
+    )
+    if found.without:
+        message = "have no volume, since their surfaces are open or they are round: " + ", ".join(found.without[:20])
+        warn((voxrt.SceneWarning("no-volume", f"objects {message}", len(found.without)),))
+    write_fractions(found, result.scene, command.fractions)
+    result.outputs["fractions"] = command.fractions
+
+
 def _check_frames(command: BuildCommand) -> None:
     """Refuse what does not go together with the frames of an animation."""
     options = command.options
@@ -95,6 +120,7 @@ def _check_frames(command: BuildCommand) -> None:
         "--bake": options.bake or None,
         "--board": command.board,
         "--budget": options.budget,
+        "--fractions": command.fractions,
         "--scheduler": options.scheduler,
         "--workers": options.workers,
     }
