@@ -5,9 +5,27 @@ import pytest
 from assets import asset, over_assets
 from oracles.rules import dilated
 from oracles.voxels import dense
-from test_turned_assets import NAMES
 
 from voxrt.voxelize import assign_colours, fit_grid, load, voxelize
+
+
+NAMES = (
+    "gltf/bevy/CornellBox/CornellBox.glb",
+    "gltf/bevy/PalmTree/PalmTree.gltf",
+    "gltf/bevy/animated/Fox.glb",
+    "gltf/manifold/mengerSponge3.glb",
+    "gltf/trimesh/CesiumMilkTruck.glb",
+    "gltf/trimesh/nested.glb",
+    "obj/assimp/spider.obj",
+    "obj/kaolin/amsterdam.obj",
+    "obj/kaolin/pizza.obj",
+    "obj/odedstein-meshes/plane/plane_holes.obj",
+    "obj/trimesh/quadknot.obj",
+    "obj/trimesh/rabbit.obj",
+    "stl/USD-Fileformat-plugins/car.stl",
+    "usd/usd-wg-assets/full_assets/Teapot/Teapot.usd",
+    "usd/usd-wg-assets/test_assets/_common/axis.usda",
+)
 
 
 @pytest.mark.parametrize("rule", ["centre", "half"])
