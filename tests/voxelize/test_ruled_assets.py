@@ -8,7 +8,6 @@ from oracles.voxels import dense
 
 from voxrt.voxelize import assign_colours, fit_grid, load, voxelize
 
-
 NAMES = (
     "gltf/bevy/CornellBox/CornellBox.glb",
     "gltf/bevy/PalmTree/PalmTree.gltf",
