@@ -11,8 +11,8 @@ import time
 from typing import TYPE_CHECKING
 
 from report import ASSETS, ROOT, machine, options_of, publish, table
-from voxelize import SKULL, displaced_sphere
 
+from voxelize import SKULL, displaced_sphere
 from voxrt.voxelize import fit_grid, load, volume_fractions, voxelize
 
 if TYPE_CHECKING:

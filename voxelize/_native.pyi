@@ -68,7 +68,7 @@ def voxelize(
 
 class VoxelVolumes(NamedTuple):
     objects: NDArray[np.uint32]
-    codes: NDArray[np.uint64]
+    voxels: NDArray[np.int32]
     volumes: NDArray[np.float64]
     whole: NDArray[np.int64]
     known: NDArray[np.uint8]

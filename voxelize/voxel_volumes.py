@@ -35,7 +35,7 @@ class VolumeFractions:
     objects
         uint32, shape (N,), ascending: numbers of objects.
     voxels
-        int32, shape (N, 3): the voxels, x, y, z in the grid, in Morton order per object.
+        int32, shape (N, 3): the voxels, x, y, z in the grid; tile by tile per object.
     fractions
         float64, shape (N,), 0 to 1, within 2**-40 of the true value.
     whole
@@ -107,13 +107,4 @@ def volume_fractions(
         raise unreachable(scene, int(error.args[0])) from None
     names = tuple(one.name for one in scene.objects)
     without = tuple(name for name, known in zip(names, found.known, strict=True) if not known)
-    return VolumeFractions(names, grid, found.objects, _voxels(found.codes), found.volumes, found.whole, without)
-
-
-def _voxels(codes: NDArray[np.uint64]) -> NDArray[np.int32]:
-    """Return the places of Morton codes."""
-    places = np.zeros((len(codes), 3), np.int32)
-    for bit in range(16):
-        for axis in range(3):
-            places[:, axis] |= ((codes >> np.uint64(3 * bit + axis)) & np.uint64(1)).astype(np.int32) << bit
-    return places
+    return VolumeFractions(names, grid, found.objects, found.voxels, found.volumes, found.whole, without)

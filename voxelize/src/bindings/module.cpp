@@ -191,20 +191,21 @@ nb::object volumes_of_parts(int depth, std::vector<MeshArrays> meshes, InputOf<u
     const SceneParts scene(depth, std::move(meshes), kinds, mesh_of, frames, materials, objects_of, rules, objects);
     ObjectVolumes found;
     LargeVector<uint32_t> owners;
-    LargeVector<uint64_t> codes;
+    LargeVector<std::array<int32_t, 3>> places;
     LargeVector<double> volumes;
     {
         const LongCall call;
         found = find_volumes(depth, scene.parts, size_t(objects), threads);
         for (const VoxelVolume& voxel : found.voxels) {
             owners.push_back(voxel.object);
-            codes.push_back(voxel.code);
+            places.push_back({int32_t(gather_bits(voxel.code)), int32_t(gather_bits(voxel.code >> 1)),
+                              int32_t(gather_bits(voxel.code >> 2))});
             volumes.push_back(voxel.volume);
         }
     }
     LargeVector<int64_t> whole(found.whole.begin(), found.whole.end());
     LargeVector<uint8_t> known(found.known.begin(), found.known.end());
-    return voxel_volumes(take(owners), take(codes), take(volumes), take(whole), take(known));
+    return voxel_volumes(take(owners), take(places), take(volumes), take(whole), take(known));
 }
 
 /// A BlockVoxelizer with the arrays that it reads.
@@ -391,7 +392,7 @@ NB_MODULE(_native, m) {
                              {"brick_codes", "brick_masks", "brick_materials", "brick_rows", "cells", "octant_codes",
                               "octant_levels", "octant_materials", "object_tallies"},
                              "What BlockVoxelizer.block() returns; tallies (src/voxelizer.h): int64, shape (O, 4).");
-    voxel_volumes = NamedTuple(m, "VoxelVolumes", {"objects", "codes", "volumes", "whole", "known"},
+    voxel_volumes = NamedTuple(m, "VoxelVolumes", {"objects", "voxels", "volumes", "whole", "known"},
                                "What find_volumes() returns.");
     nb::register_exception_translator(
         [](const std::exception_ptr& failure, void*) {
@@ -405,12 +406,11 @@ NB_MODULE(_native, m) {
     m.def("voxelize", &voxelize_parts, nb::arg("depth"), nb::arg("meshes"), nb::arg("kinds"), nb::arg("mesh_of"),
           nb::arg("frames"), nb::arg("materials"), nb::arg("objects_of"), nb::arg("rules"), nb::arg("objects"),
           nb::arg("fill"), nb::arg("thin"), nb::arg("threads"), kVoxelizeManual);
-    m.def(
-        "find_volumes", &volumes_of_parts, nb::arg("depth"), nb::arg("meshes"), nb::arg("kinds"), nb::arg("mesh_of"),
-        nb::arg("frames"), nb::arg("materials"), nb::arg("objects_of"), nb::arg("rules"), nb::arg("objects"),
-        nb::arg("threads"),
-        "Which part of each voxel with surface an object fills; arguments are those of voxelize(). By object, then by "
-        "code: objects, Morton codes, volumes. By object: voxels that are filled whole, and whether it has volumes.");
+    m.def("find_volumes", &volumes_of_parts, nb::arg("depth"), nb::arg("meshes"), nb::arg("kinds"), nb::arg("mesh_of"),
+          nb::arg("frames"), nb::arg("materials"), nb::arg("objects_of"), nb::arg("rules"), nb::arg("objects"),
+          nb::arg("threads"),
+          "Which part of each voxel with surface an object fills; arguments are those of voxelize(). By object: "
+          "objects, voxels (x, y, z), volumes. Per object: voxels that are filled whole, and whether it has volumes.");
     nb::class_<PythonBlockVoxelizer>(m, "BlockVoxelizer", kBlockVoxelizerManual)
         .def(nb::init<int, std::vector<MeshArrays>, InputOf<uint8_t>, InputOf<int32_t>, InputOf<double>,
                       InputOf<uint8_t>, InputOf<int32_t>, InputOf<uint8_t>, int, const std::string&, const std::string&,

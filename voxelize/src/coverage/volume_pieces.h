@@ -101,45 +101,121 @@ private:
     int count_ = 0;
 };
 
-template <typename Number, class Receiver>
+/// The height of a triangle's plane, exact but for the last bit of float64; z > 0 in the normal.
+template <typename Wide> class PlaneHeight {
+public:
+    PlaneHeight(const LocalTriangle<Wide>& t, Wide nx, Wide ny, Wide nz)
+        : nx_(nx), ny_(ny), nz_(nz), offset_(nx * t.x[0] + ny * t.y[0] + nz * t.z[0]),
+          spread_(((nx < 0 ? -nx : nx) + (ny < 0 ? -ny : ny)) * (kUnit / 2)) {}
+
+    /// Above (x, y), in half voxels; the height is in voxels.
+    double at(int x, int y) const {
+        const Wide numerator = numerator_at(x, y), whole = floor_div<Wide>(numerator, nz_);
+        const double part = static_cast<double>(numerator - whole * nz_) / static_cast<double>(nz_);
+        return (static_cast<double>(whole) + part) / kUnit;
+    }
+
+    /// The lowest and the highest voxel that the plane passes in the cell at (x, y), voxels.
+    int lowest(int x, int y) const { return voxel(numerator_at(2 * x + 1, 2 * y + 1) - spread_); }
+    int highest(int x, int y) const { return voxel(numerator_at(2 * x + 1, 2 * y + 1) + spread_ - 1); }
+
+private:
+    Wide numerator_at(int x, int y) const {
+        return offset_ - nx_ * (x * static_cast<Wide>(kUnit / 2)) - ny_ * (y * static_cast<Wide>(kUnit / 2));
+    }
+    int voxel(Wide numerator) const { return static_cast<int>(floor_div<Wide>(numerator, nz_ * kUnit)); }
+
+    Wide nx_, ny_, nz_, offset_, spread_;
+};
+
+/// The cells of a row that lie wholly below a triangle: first … last.
+template <typename Number> struct WholeCells {
+    int first = 0, last = -1;
+
+    /// `row`: what of the triangle lies between y and y + 1.
+    WholeCells(const Polygon<Number>& row, int y) {
+        double from = -INFINITY, to = INFINITY;
+        for (int side = 0; side < 2; ++side) {
+            double least = INFINITY, most = -INFINITY;
+            for (int i = 0; i < row.count(); ++i)
+                if (double(row[i].at[1]) == y + side) {
+                    least = std::min(least, double(row[i].at[0]));
+                    most = std::max(most, double(row[i].at[0]));
+                }
+            from = std::max(from, least);
+            to = std::min(to, most);
+        }
+        if (from + 1 <= to) {
+            first = int(std::ceil(from));
+            last = int(std::floor(to)) - 1;
+        }
+    }
+};
+
+template <typename Wide, typename Number, class Receiver>
 void add_pieces(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w, Receiver& receiver) {
-    const LocalTriangle<int128> t(a, b, c);
-    if (t.normal_z() == 0)
+    const LocalTriangle<Wide> t(a, b, c);
+    const Wide nz = t.normal_z();
+    if (nz == 0)
         return;
+    const Wide sign = nz < 0 ? -1 : 1;
+    const PlaneHeight<Wide> plane(t, sign * t.normal_x(), sign * t.normal_y(), sign * nz);
     Polygon<Number> whole;
     for (int i = 0; i < 3; ++i) {
-        auto voxels = [](int128 v) { return Number(static_cast<double>(static_cast<int64_t>(v)) / kUnit); };
+        auto voxels = [](Wide v) { return Number(static_cast<double>(static_cast<int64_t>(v)) / kUnit); };
         whole.add({{voxels(t.x[i]), voxels(t.y[i]), voxels(t.z[i])}});
     }
+    auto report = [&](int x, int y, int z, double area, double volume) {
+        const int layer = z + t.bz;
+        if (layer < 0) // the whole of the lowest voxel lies above
+            receiver.add_piece(x + t.bx, y + t.by, 0, area, area);
+        else if (layer <= w.top)
+            receiver.add_piece(x + t.bx, y + t.by, layer, area, volume);
+    };
     auto add = [&](int x, int y, int z, const Polygon<Number>& piece) {
         if (piece.count() < 3)
             return;
         double area, volume;
         piece.measure(x, y, z + 1, area, volume);
-        const int layer = z + t.bz;
-        if (layer < 0) // the whole of the lowest voxel lies above
-            receiver.add_piece(x + t.bx, y + t.by, 0, -area, -area);
-        else if (layer <= w.top)
-            receiver.add_piece(x + t.bx, y + t.by, layer, -area, -volume);
+        report(x, y, z, -area, -volume);
+    };
+    // A flat piece between two voxels counts for the lower one, where it adds no volume.
+    auto add_between = [&](int x, int y, int low, int high, const Polygon<Number>& column) {
+        if (low >= high)
+            add(x, y, high, column);
+        else
+            for (int z = low; z <= high; ++z)
+                add(x, y, z, column.cut(2, z, true).cut(2, z + 1, false));
+    };
+    auto add_whole_cell = [&](int x, int y) {
+        const int low = plane.lowest(x, y), high = plane.highest(x, y);
+        if (low >= high) {
+            report(x, y, high, -double(sign), -double(sign) * (high + 1 - plane.at(2 * x + 1, 2 * y + 1)));
+            return;
+        }
+        Polygon<Number> cell;
+        for (int i = 0; i < 4; ++i) { // in the order of the triangle's corners
+            const int u = x + (sign > 0 ? (i == 1 || i == 2) : i > 1);
+            const int v = y + (sign > 0 ? i > 1 : (i == 1 || i == 2));
+            cell.add({{Number(u), Number(v), Number(plane.at(2 * u, 2 * v))}});
+        }
+        add_between(x, y, low, high, cell);
     };
     const int y_end = std::min(whole.highest(1), w.y1 - t.by);
     for (int y = std::max(0, w.y0 - t.by); y <= y_end; ++y) {
         const Polygon<Number> row = whole.cut(1, y, true).cut(1, y + 1, false);
         if (row.count() < 3)
             continue;
+        const WholeCells<Number> cells(row, y);
         const int x_end = std::min(row.highest(0), w.x1 - t.bx);
         for (int x = std::max(row.lowest(0), w.x0 - t.bx); x <= x_end; ++x) {
-            const Polygon<Number> column = row.cut(0, x, true).cut(0, x + 1, false);
-            if (column.count() < 3)
-                continue;
-            // A flat piece between two voxels counts for the lower one, where it adds no volume.
-            const int low = column.lowest(2), high = column.highest(2);
-            if (low >= high) {
-                add(x, y, high, column);
+            if (x >= cells.first && x <= cells.last) {
+                add_whole_cell(x, y);
                 continue;
             }
-            for (int z = low; z <= high; ++z)
-                add(x, y, z, column.cut(2, z, true).cut(2, z + 1, false));
+            const Polygon<Number> column = row.cut(0, x, true).cut(0, x + 1, false);
+            if (column.count() >= 3)
+                add_between(x, y, column.lowest(2), column.highest(2), column);
         }
     }
 }
@@ -156,9 +232,9 @@ void add_pieces(const Vertex& a, const Vertex& b, const Vertex& c, const Window&
                                      int64_t{std::max({a.y, b.y, c.y})} - std::min({a.y, b.y, c.y}),
                                      int64_t{std::max({a.z, b.z, c.z})} - std::min({a.z, b.z, c.z})});
     if (extent < kNarrowExtent)
-        coverage::add_pieces<double>(a, b, c, w, receiver);
+        coverage::add_pieces<int64_t, double>(a, b, c, w, receiver);
     else
-        coverage::add_pieces<TwoDoubles>(a, b, c, w, receiver);
+        coverage::add_pieces<int128, TwoDoubles>(a, b, c, w, receiver);
 }
 
 } // namespace voxrt::voxelize

@@ -27,12 +27,20 @@ constexpr std::uint64_t morton(std::uint32_t x, std::uint32_t y, std::uint32_t z
     return spread_bits(x) | spread_bits(y) << 1 | spread_bits(z) << 2;
 }
 
-/// Moves bit 3k to bit k, for 16 bits.
+/// Moves bit 3k to bit k, for 16 bits; others are lost.
 constexpr std::uint32_t gather_bits(std::uint64_t v) {
-    std::uint32_t result = 0;
-    for (int bit = 0; bit < 16; ++bit)
-        result |= static_cast<std::uint32_t>(v >> 3 * bit & 1) << bit;
-    return result;
+    v &= 0x0000'2492'4924'9249;
+    v = (v | v >> 2) & 0x0000'0C30'C30C'30C3;
+    v = (v | v >> 4) & 0x0000'00F0'0F00'F00F;
+    v = (v | v >> 8) & 0x0000'0000'FF00'00FF;
+    v = (v | v >> 16) & 0xFFFF;
+    return static_cast<std::uint32_t>(v);
 }
+static_assert([] {
+    for (int k = 0; k < 16; ++k)
+        if (gather_bits(std::uint64_t{1} << 3 * k) != std::uint32_t{1} << k)
+            return false;
+    return gather_bits(~std::uint64_t{0}) == 0xFFFF;
+}());
 
 } // namespace voxrt::voxelize

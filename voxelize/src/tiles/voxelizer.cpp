@@ -405,9 +405,8 @@ ObjectVolumes BlockVoxelizer::volumes() {
     for (TileResult& tile : s.results(s.occupied({0, 0, s.side}), tallies, true))
         out.voxels.insert(out.voxels.end(), tile.volumes.begin(), tile.volumes.end());
     std::erase_if(out.voxels, [&](const VoxelVolume& v) { return !out.known[v.object]; });
-    std::sort(out.voxels.begin(), out.voxels.end(), [](const VoxelVolume& a, const VoxelVolume& b) {
-        return a.object != b.object ? a.object < b.object : a.code < b.code;
-    });
+    std::stable_sort(out.voxels.begin(), out.voxels.end(),
+                     [](const VoxelVolume& a, const VoxelVolume& b) { return a.object < b.object; });
     for (const ObjectTally& tally : tallies)
         out.whole.push_back(tally.voxels);
     for (const VoxelVolume& v : out.voxels)
