@@ -81,24 +81,7 @@ def render_hardware(
             f"ray tracer configuration {config!r} is built without level of detail; take one with caches, such as "
             "'cached1', or render with --engine model"
         )
-    place = tuple(value / POSITION_UNITS for value in camera.position)
-    for misfit, problem in (
-        (len(rom.octree.words) > tracer.memory_words, f"{len(rom.octree.words)} words; it holds {tracer.memory_words}"),
-        (rom.octree.depth > tracer.max_depth, f"a depth of {rom.octree.depth}; it goes to {tracer.max_depth}"),
-        (
-            not all(-tracer.position_limit <= value < tracer.position_limit for value in camera.position),
-            f"a camera at {place} voxels; it reaches ±{tracer.position_limit // POSITION_UNITS}",
-        ),
-        (
-            lighting.on and not all(-tracer.light_limit <= value < tracer.light_limit for value in lighting.position),
-            f"a light outside of ±{tracer.light_limit // POSITION_UNITS} voxels",
-        ),
-        (max(size) > _FRAME_LIMIT, f"a frame of {size[0]}x{size[1]} pixels; it counts to {_FRAME_LIMIT}"),
-    ):
-        if misfit:
-            raise SimulatorError(
-                f"{rom.name} does not fit ray tracer configuration {config!r}: {problem}; render it with --engine model"
-            )
+    check_fits(tracer, config, rom, camera=camera, size=size, lighting=lighting)
     if dram is not None and not tracer.cached:
         raise SimulatorError(
             f"ray tracer configuration {config!r} has its memory on the chip, without latency or interval; "
@@ -141,6 +124,36 @@ def render_hardware(
             CacheCost(*(pixels[count] for count in _CACHE_COUNTS)) if tracer.cached else None,
         ),
     )
+
+
+def check_fits(
+    tracer: Any,  # noqa: ANN401 - of the native module
+    config: str,
+    rom: Rom,
+    *,
+    camera: Camera,
+    size: tuple[int, int],
+    lighting: Lighting,
+) -> None:
+    """Refuse what a ray tracer's memory or registers do not hold, by a SimulatorError."""
+    place = tuple(value / POSITION_UNITS for value in camera.position)
+    for misfit, problem in (
+        (len(rom.octree.words) > tracer.memory_words, f"{len(rom.octree.words)} words; it holds {tracer.memory_words}"),
+        (rom.octree.depth > tracer.max_depth, f"a depth of {rom.octree.depth}; it goes to {tracer.max_depth}"),
+        (
+            not all(-tracer.position_limit <= value < tracer.position_limit for value in camera.position),
+            f"a camera at {place} voxels; it reaches ±{tracer.position_limit // POSITION_UNITS}",
+        ),
+        (
+            lighting.on and not all(-tracer.light_limit <= value < tracer.light_limit for value in lighting.position),
+            f"a light outside of ±{tracer.light_limit // POSITION_UNITS} voxels",
+        ),
+        (max(size) > _FRAME_LIMIT, f"a frame of {size[0]}x{size[1]} pixels; it counts to {_FRAME_LIMIT}"),
+    ):
+        if misfit:
+            raise SimulatorError(
+                f"{rom.name} does not fit ray tracer configuration {config!r}: {problem}; render it with --engine model"
+            )
 
 
 def _ray_tracer(config: str) -> Any:  # noqa: ANN401 - the native module may be absent

@@ -17,6 +17,7 @@ import matplotlib as mpl
 import numpy as np
 import quadtree
 import real_ray
+import wave_table
 from flat_world import (
     DEPTH,
     DIRECTION,
@@ -383,7 +384,7 @@ def flat_table() -> str:
 
 
 def main(folder: Path) -> None:
-    """Draw all pictures and write both tables."""
+    """Draw all pictures and write the tables."""
     mpl.use("Agg")
     folder.mkdir(parents=True, exist_ok=True)
     rom, path, picture = real_ray.trace()
@@ -413,6 +414,7 @@ def main(folder: Path) -> None:
             plt.close(figure)
     (folder / "walk.md").write_text(flat_table(), encoding="utf-8")
     (folder / "real.md").write_text(real_ray.table(rom, path), encoding="utf-8")
+    (folder / "wave.md").write_text(wave_table.table(rom, path), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -93,3 +93,25 @@ def test_the_colour_is_that_of_the_rendered_pixel(voxrt, folder, lighting):
 )
 def test_wrong_pixels(voxrt, arguments, problem):
     voxrt.fails(2, problem, "trace", "house.obj", *arguments)
+
+
+def test_the_wave_of_a_pixel(voxrt, folder):
+    verilated = pytest.importorskip("voxrt.sim._rtl")
+    assert verilated.WAVE
+    arguments = ("trace", "house.obj", "--depth", "5", "--pixel", "32,24", "--size", "64x48", "--wave", "out/ray.vcd")
+    done = voxrt.succeeds(*arguments)
+    files = [str(Path("out", f"ray{suffix}")) for suffix in (".vcd", ".gtkw", ".sucl")]
+    for file in files:
+        assert f"  wrote      {file}" in done.err
+        assert (folder / file).stat().st_size > 100
+    assert f"gtkwave {files[0]} {files[1]}" in done.err
+    result = msgspec.json.decode(voxrt.succeeds(*arguments, "--json").out, type=TraceResult)
+    assert list(result.outputs.values()) == files
+    assert (folder / files[2]).read_text().count("marker_set") == len(result.readings)
+
+
+def test_a_wave_of_another_format_is_refused(voxrt):
+    voxrt.fails(
+        2, "waves are VCD or FST files; give it a name that ends in .vcd or .fst",
+        "trace", "house.obj", "--pixel", "1,1", "--wave", "ray.png",
+    )  # fmt: skip

@@ -292,6 +292,9 @@ PICTURE = file("FILE", (".png",), "pictures are PNG files")
 PICTURES = file("FILE", (".png", ".gif", ".webp", ".mp4"), "pictures are PNG files, and animations GIF, WebP or MP4")
 """The name of a picture or of an animation."""
 
+WAVE = file("FILE", (".vcd", ".fst"), "waves are VCD or FST files")
+"""The name of a wave."""
+
 PREVIEW = Kind(
     "[FILE]",
     lambda text: PICTURE.read(text) if text else True,

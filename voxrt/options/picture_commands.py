@@ -153,6 +153,9 @@ class TraceCommand:
     pixel: tuple[int, int] = option(notations.PIXEL, MISSING, PICTURE,
         "Column and row of the pixel in the picture of voxrt render, from the upper left.")
     size: tuple[int, int] = SIZE.field(help="Width and height of that picture in pixels.")
+    wave: Path | None = option(notations.WAVE, None, OUTPUT,
+        "Write the signals of the simulated hardware while it traces this ray, a .vcd or .fst. A view file for GTKWave "
+        "(.gtkw) and one for Surfer (.sucl) stand beside it.", details="A .fst needs the package pylibfst.")
     depth: int | None = DEPTH.field()
     sight: CameraOptions = nested(CameraOptions)
     lighting: LightOptions = nested(LightOptions)

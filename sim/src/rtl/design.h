@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace voxrt::rtl {
@@ -81,6 +82,8 @@ public:
     // Calls poll now and then; what it throws ends the frame, and the design stays usable.
     virtual FrameCost render(const FrameRequest& request, const FrameImage& image,
                              const std::function<void()>& poll) = 0;
+    // The text of a VCD file with the last frame's signals, two samples per clock; empty if they are not recorded.
+    virtual std::string take_wave() = 0;
 };
 
 } // namespace voxrt::rtl

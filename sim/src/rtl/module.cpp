@@ -2,8 +2,11 @@
 //
 //   CONFIGS: list[str]        names of the configurations that were built
 //   COMPLETE: bool            whether they are all of rtl/configurations.json, and the whole cores too
+//   WAVE: bool                whether there is a recorded tiny
 //   FEATURES: dict[str, list[str]]  which of "light", "mirrors" and "lod" each of them has built in
-//   Tracer(config)            one instance of the design with its own memory; one call at a time (RuntimeError)
+//   Tracer(config, *, recorded=False)
+//                             one instance of the design with its own memory; one call at a time (RuntimeError).
+//                             recorded, of tiny alone: with take_wave
 //     .memory_words           how many words the simulated memory holds
 //     .cached                 whether its memory is external, behind caches
 //     .max_depth              the deepest octree that the configuration can trace
@@ -31,6 +34,8 @@
 //                             "bus error", "bus timeout"; of a cached memory also word_requests, line_requests and
 //                             lines_read (voxrt_pkg.sv: counters_t), else 0. progress is called with the rows done, now
 //                             and then. Releases the GIL; Ctrl-C ends it.
+//     .take_wave()            str, a VCD file: the last frame's signals of the lane, two samples per clock, the first
+//                             before a rising edge, the second after it; "" if not recorded
 //
 //   CORES, Core     the whole core: core_module.cpp
 //
@@ -61,6 +66,11 @@ namespace voxrt::rtl {
 #define VOXRT_CONFIGURATION(name, light, mirrors, lod) std::unique_ptr<Design> make_##name();
 #include "configurations.inc"
 #undef VOXRT_CONFIGURATION
+#if VOXRT_RTL_WAVE
+std::unique_ptr<Design> make_recorded_tiny();
+#else
+inline std::unique_ptr<Design> make_recorded_tiny() { return nullptr; }
+#endif
 
 namespace {
 
@@ -106,9 +116,13 @@ std::vector<std::string> names_of(std::initializer_list<std::pair<const char*, b
 
 class Tracer {
 public:
-    explicit Tracer(const std::string& name) {
+    Tracer(const std::string& name, bool recorded) {
+        if (recorded && name == "tiny")
+            design_ = make_recorded_tiny();
+        else if (recorded)
+            throw std::invalid_argument("no wave of the configuration " + name + ": only of tiny");
         for (const Configuration& configuration : configurations)
-            if (name == configuration.name)
+            if (!recorded && name == configuration.name)
                 design_ = configuration.make();
         if (!design_)
             throw std::invalid_argument("no configuration " + name + ": see CONFIGS");
@@ -233,6 +247,11 @@ public:
         return result;
     }
 
+    std::string take_wave() {
+        OneCall call(busy_);
+        return design_->take_wave();
+    }
+
 private:
     void check_port() const {
         if (cached())
@@ -257,17 +276,19 @@ NB_MODULE(_rtl, m) {
         names.emplace_back(configuration.name);
     m.attr("CONFIGS") = names;
     m.attr("COMPLETE") = VOXRT_RTL_COMPLETE;
+    m.attr("WAVE") = static_cast<bool>(VOXRT_RTL_WAVE);
     nb::dict features;
     for (const auto& [name, make, light, mirrors, lod] : voxrt::rtl::configurations)
         features[name] = voxrt::rtl::names_of({{"light", light}, {"mirrors", mirrors}, {"lod", lod}});
     m.attr("FEATURES") = features;
     nb::class_<Tracer>(m, "Tracer")
-        .def(nb::init<const std::string&>(), "config"_a)
+        .def(nb::init<const std::string&, bool>(), "config"_a, nb::kw_only(), "recorded"_a = false)
         .def_prop_ro("memory_words", &Tracer::memory_words)
         .def_prop_ro("cached", &Tracer::cached)
         .def_prop_ro("max_depth", &Tracer::max_depth)
         .def_prop_ro("position_limit", &Tracer::position_limit)
         .def_prop_ro("light_limit", &Tracer::light_limit)
+        .def("take_wave", &Tracer::take_wave)
         .def("load", &Tracer::load, "words"_a, nb::kw_only(), "lod_words"_a = false, "through_port"_a = false)
         .def("read_back", &Tracer::read_back, "count"_a)
         .def("render", &Tracer::render, "camera"_a, "width"_a, "height"_a, "depth"_a, "materials"_a, nb::kw_only(),

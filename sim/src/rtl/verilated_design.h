@@ -3,6 +3,7 @@
 
 #include "bit_fields.h"
 #include "design.h"
+#include "no_recorder.h"
 #include "stall_pattern.h"
 
 #include <voxrt/octree/words/words.h>
@@ -17,10 +18,12 @@
 
 namespace voxrt::rtl {
 
-template <class Model> class VerilatedDesign final : public Design {
+// A Recorder samples the model at both levels of each clock of a frame: no_recorder.h, wave_recorder.h.
+template <class Model, class Recorder = NoRecorder<Model>> class VerilatedDesign final : public Design {
 public:
     explicit VerilatedDesign(const Limits& limits) : limits_(limits) {
         context_.threads(VOXRT_RTL_THREADS);
+        context_.traceEverOn(Recorder::traces);
         enter();
         model_ = std::make_unique<Model>(&context_, "TOP");
         model_->rst_ni = 0;
@@ -31,6 +34,7 @@ public:
 
     ~VerilatedDesign() override {
         enter();
+        recorder_.take();
         model_.reset();
         Verilated::threadContextp(Verilated::defaultContextp());
     }
@@ -98,6 +102,7 @@ public:
         reset();
         dram_.set_timing(request.dram);
         set_frame(request);
+        recorder_.start(*model_);
         model_->start_i = 1;
         clock();
         model_->start_i = 0;
@@ -144,6 +149,11 @@ public:
                 .bus_timeout = (errors & 16) != 0};
     }
 
+    std::string take_wave() override {
+        enter();
+        return recorder_.take();
+    }
+
 private:
     // Verilator's run time works on the calling thread's context, in destructors too: never on one that is gone.
     void enter() { Verilated::threadContextp(&context_); }
@@ -157,6 +167,7 @@ private:
                 drive_bus(port);
         model_->clk_i = 0;
         model_->eval();
+        recorder_.sample();
         if (cached) {
             for (unsigned port = 0; port < Dram::ports; ++port) {
                 // voxrt_pkg::axi_read_request_t.
@@ -167,6 +178,7 @@ private:
         }
         model_->clk_i = 1;
         model_->eval();
+        recorder_.sample();
     }
 
     void drive_bus(unsigned port) {
@@ -271,6 +283,7 @@ private:
     bool lod_words_ = false;
     VerilatedContext context_;
     std::unique_ptr<Model> model_;
+    Recorder recorder_;
     Dram dram_;
 };
 

@@ -10,13 +10,18 @@ from voxrt.cli.results.build_results import print_json
 from voxrt.cli.results.memory_results import trace_result
 from voxrt.cli.terminal.errors import UsageError
 from voxrt.cli.terminal.messages import summarize, tabulate
+from voxrt.export.outputs import writing
 from voxrt.sim import explain_colour, follow_pixel
+from voxrt.sim.wave import record_wave
+from voxrt.sim.wave_files import check_wave, write_wave
 from voxrt.view.ray_table import HEADS, describe_end, describe_root, ray_table
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from voxrt.octree import Rom
     from voxrt.options.picture_commands import TraceCommand
-    from voxrt.sim import PixelColour
+    from voxrt.sim import PixelColour, RayPath
     from voxrt.sim.pixel_colour import Surface
 
 _LIGHTS = {
@@ -30,13 +35,16 @@ def run(options: TraceCommand) -> None:
     """Print the path of one pixel's ray through the octree, and how the pixel gets its colour."""
     pixel, size = options.pixel, options.size
     check_pixel(pixel, size)
+    if options.wave:
+        check_wave(options.wave)
     source = read_source(options.scene, options.depth)
     camera = source.camera(size, options.sight)
     path = follow_pixel(source.rom.octree, camera, size, pixel)
     lighting = merge_lighting(source.blob.lighting, options.lighting)
     colour = explain_colour(source.rom, path, lighting)
+    outputs = _write_wave(source.rom, path, options.wave) if options.wave else {}
     if options.reporting.json:
-        print_json(trace_result(camera, size, pixel, path, colour))
+        print_json(trace_result(camera, size, pixel, path, colour=colour, outputs=outputs))
         return
     x, y, z = (f"{value / 16:g}" for value in path.origin)
     summarize(
@@ -52,6 +60,23 @@ def run(options: TraceCommand) -> None:
     if path.readings:
         tabulate(HEADS, ray_table(source.rom, path), answer=True)
     summarize("The colour of the pixel:", _colour_rows(source.rom, colour), answer=True)
+    if outputs:
+        summarize("The wave of the ray:", _wave_rows(outputs))
+
+
+def _write_wave(rom: Rom, path: RayPath, file: Path) -> dict[str, str]:
+    wave = record_wave(rom, path)
+    with writing(file):
+        return {kind: str(written) for kind, written in write_wave(wave, file).items()}
+
+
+def _wave_rows(outputs: dict[str, str]) -> list[tuple[str, str]]:
+    wave, gtkwave, surfer = outputs.values()
+    return [
+        *(("wrote", file) for file in outputs.values()),
+        ("GTKWave", f"gtkwave {wave} {gtkwave}"),
+        ("Surfer", f"surfer --command-file {surfer} {wave}"),
+    ]
 
 
 def _colour_rows(rom: Rom, colour: PixelColour) -> list[tuple[str, str]]:

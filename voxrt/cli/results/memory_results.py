@@ -141,10 +141,18 @@ class TraceResult(msgspec.Struct, frozen=True):
     voxel: tuple[int, int, int] | None
     """Null at a miss."""
     colour: PixelColour
+    outputs: dict[str, str]
+    """Files written with ``--wave``, by kind: `wave`, `gtkwave`, `surfer`."""
 
 
 def trace_result(
-    camera: Camera, size: tuple[int, int], pixel: tuple[int, int], path: RayPath, colour: PixelColour
+    camera: Camera,
+    size: tuple[int, int],
+    pixel: tuple[int, int],
+    path: RayPath,
+    *,
+    colour: PixelColour,
+    outputs: dict[str, str],
 ) -> TraceResult:
     """Tell programs the way of a ray."""
     return TraceResult(
@@ -171,6 +179,7 @@ def trace_result(
         face=_AXES[path.face],
         voxel=path.cell,
         colour=colour,
+        outputs=outputs,
     )
 
 
