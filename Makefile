@@ -115,7 +115,7 @@ hardware: $(VENV)/.hardware
 	$(BIN)/python rtl/formal/prove.py
 
 # Ten minutes and more per board. BOARDS chooses.
-BOARDS := ulx3s-12f ulx3s-45f ulx3s-85f ulx3s-85f-sdram icepi-zero
+BOARDS := $(patsubst board/designs/%/board.json,%,$(wildcard board/designs/*/board.json))
 boards: $(INSTALLED) $(VENV)/.tools $(VENV)/.estimate
 	for board in $(BOARDS); do \
 	  $(BIN)/python -m voxrt.board.designs.build $$board --netlist && \

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from voxrt.board.designs.base_design import base_contents, find_slices
+from voxrt.board.designs.description import VCO_MHZ, read_description
 from voxrt.board.designs.multiplier_registers import use_multiplier_registers
 
 if TYPE_CHECKING:
@@ -35,25 +36,36 @@ TOP = "ecp5_top"
 SOURCE_LISTS = {"ecp5_top": "ecp5.f", "ecp5_top_sdram": "ecp5_sdram.f"}
 """The file that lists the sources of a design, by its top."""
 TABLE_WORDS = 4096
-OCTREE_WORDS = 1 + 8 * 983_039
-"""Words of the octree memory of a board with SDRAM: 30 of its 32 MB."""
-_VCO_MHZ = 750
 _CLOCKS = {"system": "system_clk", "pixel": "pixel_clk", "bit": "bit_clk"}
 
 
-def read_board(name: str) -> dict[str, Any]:
-    """Read the description of a board.
+def board_file(name: str) -> Path:
+    """Give the ``board.json`` of a board: that of a design of ours by its name, or a file by its path.
 
     Raises
     ------
     KeyError
         There is no board of this name.
     """
+    if name.endswith(".json"):
+        return Path(name)
     path = DESIGNS / name / "board.json"
     if not path.is_file():
         raise KeyError(f"there is no board {name!r}; there are {', '.join(board_names())}")
-    board: dict[str, Any] = json.loads(path.read_text())
-    return board
+    return path
+
+
+def read_board(name: str) -> dict[str, Any]:
+    """Read the description of a board, by its name or by the path of its ``board.json``.
+
+    Raises
+    ------
+    KeyError
+        There is no board of this name.
+    ValueError
+        The file is no description of a board, or its PLL does not give the clocks.
+    """
+    return read_description(board_file(name))
 
 
 def board_names() -> list[str]:
@@ -69,7 +81,7 @@ def memories(board: Mapping[str, Any]) -> dict[str, tuple[int, int]]:
 
 def clock_hz(board: Mapping[str, Any]) -> int:
     """Give the system clock of a board."""
-    return _VCO_MHZ * 1_000_000 // int(board["pll"]["system_divider"])
+    return VCO_MHZ * 1_000_000 // int(board["pll"]["system_divider"])
 
 
 def top_of(board: Mapping[str, Any]) -> str:
@@ -250,7 +262,7 @@ def build(name: str, folder: Path, *, seed: int | None = None, write_netlist: bo
     chosen = board["seed"] if seed is None else seed
     synthesize(board, {memory: base_contents(memory, *size) for memory, size in memories(board).items()}, folder)
     place_and_route(board, chosen, folder, write_netlist=write_netlist)
-    return describe(board, name, chosen, folder)
+    return describe(board, board_file(name).parent.name, chosen, folder)
 
 
 def _run(program: str, arguments: list[str], folder: Path) -> None:
@@ -263,19 +275,19 @@ def _run(program: str, arguments: list[str], folder: Path) -> None:
 def main() -> None:
     """Build, and write the files of the base design."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("name", choices=board_names())
+    parser.add_argument("name", help=f"{', '.join(board_names())}, or the path of a board.json")
     parser.add_argument("--seed", type=int, help="of the placement; the board's own if absent")
     parser.add_argument("--folder", type=Path, default=Path("build", "board"), help="for what the tools write")
     parser.add_argument("--netlist", action="store_true", help="write the netlist after place and route, too")
     parser.add_argument("--keep", action="store_true", help="leave the base design as it is: for trials of seeds")
     options = parser.parse_args()
-    folder = options.folder / options.name
+    place = board_file(options.name).parent
+    folder = options.folder / place.name
     folder.mkdir(parents=True, exist_ok=True)
     described = build(options.name, folder, seed=options.seed, write_netlist=options.netlist)
     print(json.dumps({key: described[key] for key in ("seed", "fmax_mhz", "utilisation")}))
     if options.keep:
         return
-    place = DESIGNS / options.name
     (place / "base.json").write_text(json.dumps(described, indent=1) + "\n")
     (place / "base.config.bz2").write_bytes(bz2.compress((folder / "top.config").read_bytes()))
 

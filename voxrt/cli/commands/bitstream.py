@@ -28,18 +28,16 @@ if TYPE_CHECKING:
 def run(options: BitstreamCommand) -> None:
     """Make the bitstream of a board that shows a scene, turning, on its monitor."""
     from voxrt.boards.beam import SCREEN, SMALL, fit_beam, fit_frames  # noqa: PLC0415
-    from voxrt.boards.bitstream import board_names, load_bitstream, make_bitstream  # noqa: PLC0415 - NumPy comes with it
+    from voxrt.boards.bitstream import find_loader, load_bitstream, make_bitstream  # noqa: PLC0415 - NumPy comes with it
     from voxrt.boards.board_scenes import board_scene  # noqa: PLC0415
     from voxrt.views.viewpoint import orbit  # noqa: PLC0415
 
     if options.seed is not None and not options.rebuild:
         raise UsageError("--seed is of the placement, which --rebuild makes; give both")
     check_folder(options.output)
-    try:
-        board = find_board(options.board, board_names())
-    except ValueError as error:
-        raise UsageError(f"--board: {error}") from error
-    placed = _place(board, options.seed, rebuild=options.rebuild)
+    if options.load:
+        find_loader()
+    placed = _place(_find_board(options.board), options.seed, rebuild=options.rebuild)
     design = placed.design
     blob, budget = read_memory(options.source, options.depth, placed)
     features = {name for name in ("light", "mirrors") if design.core[name.capitalize()]}
@@ -62,6 +60,18 @@ def run(options: BitstreamCommand) -> None:
         summarize(f"{file.name}:", [("loaded", placed.title)])
     if options.reporting.json:
         print_json(result)
+
+
+def _find_board(name: str) -> str:
+    """Return the name of a board that voxrt brings, or the path of a board.json."""
+    from voxrt.boards.bitstream import board_names  # noqa: PLC0415
+
+    if name.endswith(".json"):
+        return name
+    try:
+        return find_board(name, board_names())
+    except ValueError as error:
+        raise UsageError(f"--board: {error}; or give the path of a board.json") from error
 
 
 def _place(name: str, seed: int | None, *, rebuild: bool) -> PlacedBoard:
@@ -152,6 +162,7 @@ def summary_rows(result: BitstreamResult, report: Path) -> list[tuple[str, str]]
     clock = f"place and route reach {reached:.1f} of {needed:.1f} MHz: the board may fail; try another --seed"
     return [
         ("board", f"{result.title}, {lanes}, {result.clock_hz / 1e6:.1f} MHz"),
+        *([("revision", _revision_text(result))] if result.revision else []),
         *([("clock", clock)] if reached < needed else []),
         ("scene", f"{result.words:,} of {result.capacity:,} words, depth {result.depth}"),
         ("picture", f"{width} x {height}{squares}, {result.frames_per_second:.1f} frames per second"),
@@ -159,3 +170,8 @@ def summary_rows(result: BitstreamResult, report: Path) -> list[tuple[str, str]]
         ("wrote", result.bitstream),
         ("wrote", str(report)),
     ]
+
+
+def _revision_text(result: BitstreamResult) -> str:
+    others = f"; {result.other_revisions}" if result.other_revisions else ""
+    return f"the design is for {result.revision}{others}"

@@ -49,6 +49,10 @@ class BitstreamResult(msgspec.Struct, frozen=True):
     """New pictures; the screen repeats them at 59.5 Hz."""
     budget: BudgetEntry | None = None
     """What fitting an asset to the board took; null for a memory, which must fit as it is."""
+    revision: str | None = None
+    """The revision of the board that the design is for; null: all."""
+    other_revisions: str | None = None
+    """What differs in the others."""
 
 
 def bitstream_result(
@@ -60,6 +64,8 @@ def bitstream_result(
         name=rom.name,
         board=placed.name,
         title=placed.title,
+        revision=placed.revision,
+        other_revisions=placed.other_revisions,
         bitstream=name_file(file),
         words=len(rom.octree.words),
         capacity=design.capacity,
