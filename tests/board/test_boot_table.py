@@ -24,7 +24,7 @@ from voxrt.board.view import Camera, Lighting
 
 
 def play(table, start, limit=4096):
-    """What a list writes, by address: docs/ecp5_boards.md."""
+    """What a list writes, by address: docs/board-bus.md."""
     written, word = {}, start
     while word < min(start + limit, 4096):
         header = int(table[word])

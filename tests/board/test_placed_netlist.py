@@ -66,7 +66,7 @@ def test_a_patched_design_is_the_rebuilt_one(small, contents, patched):
 
 
 def requests(random):
-    """Make requests to all that the small design has, as docs/ecp5_boards.md describes them."""
+    """Make requests to all that the small design has, as docs/board-serial.md describes them."""
     for number in range(60):
         operation = random.choice([1, 2])
         count = int(random.integers(1, 9))

