@@ -13,7 +13,9 @@ if TYPE_CHECKING:
 
     from voxrt.sim.wave import Signal, Wave
 
-_MARKERS = 26  # that GTKWave has, A to Z
+GTKWAVE_MARKERS = 26
+"""GTKWave marks so many times, A to Z."""
+
 # GTKWave's trace flags: how values are shown.
 _HEXADECIMAL, _UNSIGNED, _BINARY = 0x22, 0x24, 0x28
 _SHOWN = (
@@ -154,8 +156,8 @@ def _write_fst(wave: Wave, path: Path) -> None:
 
 
 def _gtkwave_view(wave: Wave, path: Path, shown: list[tuple[Signal, int]]) -> str:
-    marked = wave.words[:_MARKERS]
-    times = [*marked, *[-1] * (_MARKERS - len(marked))]
+    marked = wave.words[:GTKWAVE_MARKERS]
+    times = [*marked, *[-1] * (GTKWAVE_MARKERS - len(marked))]
     lines = [
         f'[dumpfile] "{path.name}"',
         "[timestart] 0",

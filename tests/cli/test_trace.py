@@ -12,8 +12,10 @@ import pytest
 from PIL import Image
 
 from voxrt import read_rom
+from voxrt.cli.commands.trace import wave_rows
 from voxrt.cli.results.memory_results import TraceResult
 from voxrt.octree import material_at
+from voxrt.sim.wave import Wave
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
@@ -115,3 +117,11 @@ def test_a_wave_of_another_format_is_refused(voxrt):
         2, "waves are VCD or FST files; give it a name that ends in .vcd or .fst",
         "trace", "house.obj", "--pixel", "1,1", "--wave", "ray.png",
     )  # fmt: skip
+
+
+def test_what_a_wave_leaves_out_is_printed():
+    outputs = {"wave": "ray.vcd", "gtkwave": "ray.gtkw", "surfer": "ray.sucl"}
+    rows = dict(wave_rows(Wave((), tuple(range(40, 320, 10)), 400, 2), outputs))
+    assert rows["markers"] == "GTKWave has none for the last 2 of 28 words"
+    assert rows["rays"].startswith("the ray is the first of 2")
+    assert not {"markers", "rays"} & dict(wave_rows(Wave((), (40,), 400, 1), outputs)).keys()

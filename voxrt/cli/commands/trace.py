@@ -13,7 +13,7 @@ from voxrt.cli.terminal.messages import summarize, tabulate
 from voxrt.export.outputs import writing
 from voxrt.sim import explain_colour, follow_pixel
 from voxrt.sim.wave import record_wave
-from voxrt.sim.wave_files import check_wave, write_wave
+from voxrt.sim.wave_files import GTKWAVE_MARKERS, check_wave, write_wave
 from voxrt.view.ray_table import HEADS, describe_end, describe_root, ray_table
 
 if TYPE_CHECKING:
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from voxrt.options.picture_commands import TraceCommand
     from voxrt.sim import PixelColour, RayPath
     from voxrt.sim.pixel_colour import Surface
+    from voxrt.sim.wave import Wave
 
 _LIGHTS = {
     "lit": "shines on it",
@@ -42,7 +43,7 @@ def run(options: TraceCommand) -> None:
     path = follow_pixel(source.rom.octree, camera, size, pixel)
     lighting = merge_lighting(source.blob.lighting, options.lighting)
     colour = explain_colour(source.rom, path, lighting)
-    outputs = _write_wave(source.rom, path, options.wave) if options.wave else {}
+    wave, outputs = _write_wave(source.rom, path, options.wave) if options.wave else (None, {})
     if options.reporting.json:
         print_json(trace_result(camera, size, pixel, path, colour=colour, outputs=outputs))
         return
@@ -60,22 +61,30 @@ def run(options: TraceCommand) -> None:
     if path.readings:
         tabulate(HEADS, ray_table(source.rom, path), answer=True)
     summarize("The colour of the pixel:", _colour_rows(source.rom, colour), answer=True)
-    if outputs:
-        summarize("The wave of the ray:", _wave_rows(outputs))
+    if wave:
+        summarize("The wave of the ray:", wave_rows(wave, outputs))
 
 
-def _write_wave(rom: Rom, path: RayPath, file: Path) -> dict[str, str]:
+def _write_wave(rom: Rom, path: RayPath, file: Path) -> tuple[Wave, dict[str, str]]:
     wave = record_wave(rom, path)
     with writing(file):
-        return {kind: str(written) for kind, written in write_wave(wave, file).items()}
+        return wave, {kind: str(written) for kind, written in write_wave(wave, file).items()}
 
 
-def _wave_rows(outputs: dict[str, str]) -> list[tuple[str, str]]:
-    wave, gtkwave, surfer = outputs.values()
+def wave_rows(wave: Wave, outputs: dict[str, str]) -> list[tuple[str, str]]:
+    """Give the rows of what was recorded, and of how to look at it."""
+    file, gtkwave, surfer = outputs.values()
+    others, unmarked = wave.rays - 1, len(wave.words) - GTKWAVE_MARKERS
     return [
-        *(("wrote", file) for file in outputs.values()),
-        ("GTKWave", f"gtkwave {wave} {gtkwave}"),
-        ("Surfer", f"surfer --command-file {surfer} {wave}"),
+        *([("rays", f"the ray is the first of {wave.rays}: a camera makes its direction only so")] if others else []),
+        *(
+            [("markers", f"GTKWave has none for the last {unmarked} of {len(wave.words)} words")]
+            if unmarked > 0
+            else []
+        ),
+        *(("wrote", each) for each in outputs.values()),
+        ("GTKWave", f"gtkwave {file} {gtkwave}"),
+        ("Surfer", f"surfer --command-file {surfer} {file}"),
     ]
 
 
