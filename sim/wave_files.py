@@ -171,7 +171,8 @@ def _gtkwave_view(wave: Wave, path: Path, shown: list[tuple[Signal, int]]) -> st
 
 
 def _surfer_view(wave: Wave, shown: list[Signal]) -> str:
-    lines = [f"variable_add {'.'.join(signal.scope)}.{signal.name}" for signal in shown]
+    # Its reader takes an array for a scope, in which the elements are [0], [1] and so on.
+    lines = [f"variable_add {'.'.join(signal.scope)}.{signal.name.replace('[', '.[')}" for signal in shown]
     lines += [f"marker_set word_{number} {time}" for number, time in enumerate(wave.words, 1)]
     lines += [f"cursor_set {wave.words[0]}"] if wave.words else []
     return "\n".join([*lines, "zoom_fit"]) + "\n"

@@ -123,5 +123,5 @@ def test_what_a_wave_leaves_out_is_printed():
     outputs = {"wave": "ray.vcd", "gtkwave": "ray.gtkw", "surfer": "ray.sucl"}
     rows = dict(wave_rows(Wave((), tuple(range(40, 320, 10)), 400, 2), outputs))
     assert rows["markers"] == "GTKWave has none for the last 2 of 28 words"
-    assert rows["rays"].startswith("the ray is the first of 2")
+    assert rows["rays"].startswith("the lane traces 2 rays, this one first")
     assert not {"markers", "rays"} & dict(wave_rows(Wave((), (40,), 400, 1), outputs)).keys()

@@ -74,14 +74,12 @@ def _write_wave(rom: Rom, path: RayPath, file: Path) -> tuple[Wave, dict[str, st
 def wave_rows(wave: Wave, outputs: dict[str, str]) -> list[tuple[str, str]]:
     """Give the rows of what was recorded, and of how to look at it."""
     file, gtkwave, surfer = outputs.values()
-    others, unmarked = wave.rays - 1, len(wave.words) - GTKWAVE_MARKERS
+    unmarked = len(wave.words) - GTKWAVE_MARKERS
+    rays = f"the lane traces {wave.rays} rays, this one first: no register of the camera holds its direction"
+    markers = f"GTKWave has none for the last {unmarked} of {len(wave.words)} words"
     return [
-        *([("rays", f"the ray is the first of {wave.rays}: a camera makes its direction only so")] if others else []),
-        *(
-            [("markers", f"GTKWave has none for the last {unmarked} of {len(wave.words)} words")]
-            if unmarked > 0
-            else []
-        ),
+        *([("rays", rays)] if wave.rays > 1 else []),
+        *([("markers", markers)] if unmarked > 0 else []),
         *(("wrote", each) for each in outputs.values()),
         ("GTKWave", f"gtkwave {file} {gtkwave}"),
         ("Surfer", f"surfer --command-file {surfer} {file}"),
