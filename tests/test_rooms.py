@@ -30,7 +30,19 @@ INSIDE_CLI = ("terminal", "results", "schemas", "inputs", "line", "commands", "r
 """The folders and modules of ``voxrt/cli/``, in the same order."""
 
 INSIDE_SOURCES = {
-    "voxelize/src": ("work", "grid", "scene", "coverage", "faces", "holes", "mesh", "tiles", "colour", "bindings"),
+    "voxelize/src": (
+        "work",
+        "grid",
+        "rules",
+        "scene",
+        "coverage",
+        "faces",
+        "holes",
+        "mesh",
+        "tiles",
+        "colour",
+        "bindings",
+    ),
     "octree/src": ("words", "pool", "build", "files", "query", "sight", "budget", "bindings"),
     "sim/src/model": ("rays", "frames", "views", "bindings"),
     "sim/src/bake": ("surface", "rays", "light", "bindings"),

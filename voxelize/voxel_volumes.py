@@ -98,10 +98,10 @@ def volume_fractions(
     """
     parts = SceneParts(scene, grid, fill="solid", rule="half", thin="drop", geometry=geometry, pow2=pow2)
     threads = arguments.whole("threads", threads, 0, MOST_THREADS)
-    given = parts.native_arguments()
+    arrays = parts.native_arguments()
     try:
         found = _native.find_volumes(
-            **{name: given[name] for name in given if name not in ("fill", "thin")}, threads=threads
+            **{name: arrays[name] for name in arrays if name not in ("fill", "thin")}, threads=threads
         )
     except _native.OutOfRangeError as error:
         raise unreachable(scene, int(error.args[0])) from None

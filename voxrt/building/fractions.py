@@ -85,6 +85,12 @@ def write_fractions(found: VolumeFractions, scene: Scene, path: str | os.PathLik
         An image of more than 256 voxels per side.
     OutputError
         The file cannot be written, or has another suffix.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> scene = voxrt.load("examples/house.obj")
+    >>> write_fractions(voxrt.volume_fractions(scene, depth=4), scene, "house-fractions.npz")
     """
     path = Path(path)
     check_fractions_file(path)

@@ -23,7 +23,7 @@ class BuildCommand:
         "A glTF (.gltf, .glb), OBJ, USD (.usd, .usda, .usdc, .usdz), STL or PLY file, or a scene of such files "
         "(.toml).")
     output: Path = option(file("DIR|FILE"), Path(), OUTPUT,
-        "Folder for the files, or the file of words itself: NAME.mem, .coe, .mif or .bin.", flags=("--output", "-o"))
+        "Folder for the files, or the file of words: NAME.mem, .coe, .mif, .bin.", flags=("--output", "-o"))
     options: BuildOptions = nested(BuildOptions)
     frames: FrameChoice | None = option(notations.FRAMES, None, CONTENT,
         "Build an animation: one memory whose roots are its frames. START:STOP:COUNT: so many frames, evenly from "
@@ -34,7 +34,7 @@ class BuildCommand:
         "Render the view of the preview by the simulated hardware, too, and count the pixels that differ. This is the "
         "default where it takes less than five seconds.", is_rare=True)
     no_check: bool = option(FLAG, False, PREVIEW, "Leave that out.", is_rare=True)
-    fractions: Path | None = option(file("FILE"), None, OUTPUT,
+    fractions: Path | None = option(file("FILE"), None, CONTENT,
         "Also write how much of each voxel every object fills: .npz (NumPy) or .vti (ParaView).", is_rare=True)
     profile: bool = option(FLAG, False, RUNNING,
         "Print the time of each stage, with its parts indented below it.", is_rare=True)

@@ -68,7 +68,7 @@ class BuildOptions:
     """
 
     depth: int | None = DEPTH.field(group=GRID,
-        help="Levels of the octree, 1 to 16. The default is 7, unless {voxel_size} is given.",
+        help="Levels of the octree, 1 to 16; 7 unless {voxel_size} is given.",
         details="The grid has 2**depth voxels per side.")
     voxel_size: float | None = option(notations.LENGTH, None, GRID,
         "Side of a voxel in metres; on the command line also with a unit, such as 5cm.",
@@ -80,8 +80,8 @@ class BuildOptions:
         details="Open are pieces whose openings exceed 5 % of their area together, such as clothes.",
         manifest="always")
     rule: Rule = option(one_of(RULES), "touch", CONTENT,
-        "Which voxels of solids are filled. touch: all that a solid touches, which makes objects fat. centre: those "
-        "whose centre is in a solid. half: those that solids fill by half.",
+        "Which voxels solids fill. touch, the default: all that they touch. centre: those whose centre they hold. "
+        "half: those that they fill by half.",
         details="A surface that encloses nothing keeps each voxel that it touches.", manifest="always")
     thin: Thin = option(one_of(THIN_CHOICES), "keep", CONTENT,
         "Parts too thin for {rule}. keep: some of the voxels that they touch stay, so that none gets lost or breaks. "
