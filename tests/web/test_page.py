@@ -53,20 +53,6 @@ def test_a_drag_orbits_and_a_finger_too(browser: Browser) -> None:
     assert browser.run("return window.voxrt.newest.camera.look") != second["look"]
 
 
-def test_a_link_carries_scene_depth_and_camera(browser: Browser) -> None:
-    opened(browser, "#scene=planet&depth=5", "planet", 5)
-    browser.mouse([browser.middle("#picture"), (400, 300)])
-    rests(browser)
-    camera = browser.run("return window.voxrt.newest.camera")
-    browser.click("#copy")
-    link = browser.run("return location.hash")
-    opened(browser, link, "planet", 5)
-    rests(browser)
-    again = browser.run("return window.voxrt.newest.camera")
-    assert np.allclose(again["look"], camera["look"], atol=60)
-    assert np.allclose(again["position"], camera["position"], atol=2)
-
-
 def test_nothing_is_asked_of_other_servers(browser: Browser) -> None:
     opened(browser)
     names = browser.run("return performance.getEntriesByType('resource').map(one => one.name)")

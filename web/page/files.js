@@ -1,6 +1,6 @@
 // Dropped files as a scene: three.js parses them. Nothing is fetched but the files themselves.
 
-import { FileError, Folder, stem } from "./folder.js";
+import { extension, FileError, Folder, stem } from "./folder.js";
 /** @import { DroppedFile } from "./folder.js" @import { Memory } from "./memory.js" */
 /** @import { Scene, Voxrt, Warning } from "./voxrt/voxrt.js" */
 
@@ -24,7 +24,6 @@ const READERS = new Map([
   ["usd", usd],
 ]);
 const FORMATS = [...READERS.keys(), "vox", "mem"];
-/** @param {string} name */ const extension = (name) => name.slice(name.lastIndexOf(".") + 1).toLowerCase();
 
 /** The first scene that no other one names: layers of USD refer to each other. @param {DroppedFile[]} files */
 function sceneAmong(files) {
@@ -44,6 +43,7 @@ export async function readFiles(files, voxrt) {
     const formats = FORMATS.map((format) => `.${format}`).join(", ");
     throw new FileError(`${files[0]?.name ?? "nothing"}: is no scene; drop ${formats}`);
   }
+  if (!main.bytes.length) throw new FileError(`${main.name}: is empty; export it again`);
   const known = { name: stem(main.name), file: main.name };
   const kind = extension(main.name);
   try {
@@ -63,7 +63,8 @@ export async function readFiles(files, voxrt) {
     return { ...known, scene };
   } catch (error) {
     const text = error instanceof Error ? error.message : String(error);
-    const problem = text.split("\n")[0];
+    const isOurs = !(error instanceof RangeError || error instanceof TypeError || error instanceof SyntaxError);
+    const problem = (isOurs ? "" : "is damaged or cut off; export it again: ") + text.split("\n")[0];
     throw new FileError(problem.startsWith(main.name) ? problem : `${main.name}: ${problem}`);
   }
 }

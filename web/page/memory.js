@@ -16,7 +16,8 @@ export const PLAIN = { position: [0, 0, 0], ambient: 90, on: false, flat: false,
  * author; `manifest`: that it came with. @typedef {{ name: string, file: string, words: Uint32Array, depth: number,
  * materials: Required<Material>[], grid: { origin: readonly number[], voxelSize: number } | null, objects:
  * object[], warnings: Warning[], lighting?: Lighting | null, view?: Registers | null, manifest?: Manifest | null,
- * baked?: Baked | null, fitted?: Fitted | null, fill?: string, seconds?: number, fixed?: boolean }} Memory */
+ * baked?: Baked | null, fitted?: Fitted | null, fill?: string, up?: string |
+ * null, unit?: number | null, seconds?: number, fixed?: boolean }} Memory */
 
 /** @typedef {Memory & { voxels: number[], bounds: Box }} Shown with voxels by material */
 
@@ -30,7 +31,8 @@ export function memBytes(words) {
   return bytes;
 }
 
-/** The box of cubes: x, y, z of the lowest corner and the side, each; null for none. @param {Int32Array} cubes */
+/** The box of cubes: x, y, z of the lowest corner and the side, each; null for none. @param {Int32Array} cubes
+ * @returns {Box | null} */
 export function boundsOf(cubes) {
   if (!cubes.length) return null;
   const [low, high] = [Array(3).fill(Infinity), Array(3).fill(-Infinity)];
@@ -41,3 +43,6 @@ export function boundsOf(cubes) {
     }
   return [low, high];
 }
+
+/** The whole world. @param {number} depth @returns {Box} */
+export const worldOf = (depth) => [Array(3).fill(0), Array(3).fill(2 ** depth)];
