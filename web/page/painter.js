@@ -14,7 +14,7 @@ const BANDS = 3; // per worker: they cost differently
 const AHEAD = 2; // bands per worker: it renders one while the next one waits there
 const MOST = 8; // workers
 const MEMORY = 1 << 30; // bytes of words in all workers
-const LIMITS = { size: [4096, 4096], width_step: 1, position_limit: 2 ** 27 };
+const LIMITS = { size: [4096, 4096], pixels: 1 << 24, width_step: 1, position_limit: 2 ** 27 };
 const DEVICE = { name: "this browser", features: ["light", "mirrors"], ...LIMITS };
 
 /** A frame that is rendered. `since`: when it was requested; `left`: bands that are not rendered; `aside`: who waits

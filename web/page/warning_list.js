@@ -26,7 +26,8 @@ export class WarningList {
       text: `The budget changed ${(100 * changed).toFixed(1)} % of the surface.`,
       ...this.#resolve(memory, -1),
     };
-    const all = [...(changed > RUINED ? [ruin] : []), ...sentences.values()].map((one) => this.#row(one));
+    const found = [...sentences.values()].sort((a, b) => Number(Boolean(b.mend)) - Number(Boolean(a.mend)));
+    const all = [...(changed > RUINED ? [ruin] : []), ...found].map((one) => this.#row(one));
     const rest = all.splice(MOST);
     const more = element("details", {}, element("summary", {}, `${rest.length} more`), element("ul", {}, ...rest));
     $("warnings").replaceChildren(...all, ...(rest.length ? [element("li", {}, more)] : []));
