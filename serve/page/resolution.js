@@ -14,11 +14,13 @@ const RATIO = 2; // of the screen's pixels to those of the page, at most
 
 export class Resolution {
   /** @type {number | null} seconds per pixel */ cost = null;
+  #newest = 0; // seconds per pixel of the newest frame: the first frames of a scene are slow
   /** @type {Size | null} a size that was chosen in place of the stage's */ fixed = null;
 
   /** Learn from a frame; what the network takes counts too. @param {Size} size @param {number} seconds */
   measure([width, height], seconds) {
     const cost = seconds / (width * height);
+    this.#newest = cost;
     this.cost = this.cost === null ? cost : Math.sqrt(this.cost * cost);
   }
 
@@ -34,7 +36,7 @@ export class Resolution {
     const smooth =
       !this.fixed &&
       this.cost !== null &&
-      this.seconds(doubled) <= SMOOTH &&
+      Math.min(this.cost, this.#newest) * doubled[0] * doubled[1] <= SMOOTH &&
       doubled[0] * doubled[1] <= (device.pixels ?? PIXELS) &&
       doubled.every((side, i) => side <= device.size[i]) &&
       doubled[0] % device.width_step === 0;

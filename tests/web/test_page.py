@@ -118,3 +118,33 @@ def test_axe_finds_no_fault(browser: Browser, dark: bool) -> None:
     )
     browser.theme(dark=True)
     assert found == []
+
+
+def test_a_picture_that_is_refined_does_not_jump(browser: Browser) -> None:
+    """Corners of coarse frames look within half a pixel of the finest frame where its corners look."""
+    opened(browser)
+    script = """
+        const [done] = arguments;
+        (async () => {
+          const { alignedRegisters, pixelDirection } = await import("./camera.js");
+          const finest = [1824, 1504];
+          let worst = 0;
+          for (let i = 0; i < 200; i++) {
+            const pose = { eye: [9, 9, 9], yaw: i * 0.7, pitch: Math.sin(i) * 1.5, fov: 35, distance: 50 };
+            const corner = (size, x, y) => {
+              const registers = alignedRegisters(pose, size, finest);
+              const ray = pixelDirection(registers, size, x * size[0], y * size[1]);
+              return ray.map((part) => part / Math.hypot(...ray));
+            };
+            for (const [x, y] of [[0, 0], [1, 0], [0, 1], [1, 1]])
+              for (const part of [2, 4, 8]) {
+                const coarse = corner(finest.map((side) => side / part), x, y);
+                const fine = corner(finest, x, y);
+                worst = Math.max(worst, Math.hypot(...coarse.map((one, axis) => one - fine[axis])));
+              }
+          }
+          done(worst);
+        })();
+    """
+    pixel = 2 * np.tan(np.deg2rad(35 / 2)) / (0.75 * 1824)
+    assert browser.run_async(script) < pixel / 2

@@ -3,7 +3,7 @@
 import { BandPicture, coloursOf } from "./band_picture.js";
 import { BuildNotice } from "./build_notice.js";
 import { Builder } from "./builder.js";
-import { pixelDirection, toRegisters } from "./camera.js";
+import { pixelDirection } from "./camera.js";
 import { $ } from "./elements.js";
 import { Figures } from "./figures.js";
 import { firstView, limitOf } from "./first_view.js";
@@ -50,7 +50,7 @@ export class App {
       const samples = this.frames.receive(bands);
       this.picture.showBands(bands, samples);
       this.figures.add(bands, samples);
-      const shownCamera = () => toRegisters(/** @type {Pose} */ (this.view()), this.#shownSize());
+      const shownCamera = () => this.frames.registers(/** @type {Pose} */ (this.view()), this.#shownSize());
       const colours = () => coloursOf(bands);
       const readable = { newest: bands, colours, view: () => this.view(), shownCamera };
       Object.assign(window, { voxrt: readable }); // scripts may read the picture
@@ -153,7 +153,7 @@ export class App {
   /** Follow the ray of a pixel. @param {Size} pixel column and row */
   async #follow([column, row]) {
     const size = this.#shownSize();
-    const registers = toRegisters(/** @type {Pose} */ (this.view()), size);
+    const registers = this.frames.registers(/** @type {Pose} */ (this.view()), size);
     const followed = await this.painter.follow(registers.position, pixelDirection(registers, size, column, row));
     return { ...followed, registers, size, pixel: [column, row] };
   }

@@ -2,7 +2,7 @@
 
 import { toRegisters } from "./camera.js";
 import { $, element } from "./elements.js";
-import { average, mean, savePng } from "./picture.js";
+import { mean, savePng } from "./picture.js";
 import { scale } from "./vectors.js";
 /** @import { App } from "./app.js" @import { BandFrame } from "./band_picture.js" @import { Pose, Size } from "./camera.js" */
 /** @import { Painter } from "./painter.js" */
@@ -19,7 +19,7 @@ const PLACES = [
 
 /** A picture with four rays per pixel. Registers are coarse where pixels are many, so it is the mean of four frames, of
  * rays a part of a pixel apart. @param {Painter} painter @param {Pose} view @param {Size} size */
-async function still(painter, view, size) {
+export async function still(painter, view, size) {
   const { position, look, right, up } = toRegisters(view, size);
   const frames = PLACES.map(([column, row]) => {
     const moved = look.map((part, axis) => Math.round(part + column * right[axis] - row * up[axis]));
@@ -40,15 +40,6 @@ async function still(painter, view, size) {
   const canvas = element("canvas", { width: size[0], height: size[1] });
   canvas.getContext("2d", { alpha: false })?.putImageData(image, 0, 0);
   savePng(canvas, memory.name);
-}
-
-/** The same by one frame of twice the columns and rows. @param {Painter} painter @param {Pose} view @param {Size} size */
-export async function quickStill(painter, view, size) {
-  const doubled = scale(size, 2);
-  const frame = await painter.picture({ camera: toRegisters(view, doubled), size: doubled });
-  const image = new ImageData(size[0], size[1]);
-  average(pixelsOf(frame), 4, doubled[0], size[0], size[1], image.data);
-  return image;
 }
 
 /** @param {BandFrame} frame */ function pixelsOf({ width, height, bands }) {

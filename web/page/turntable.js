@@ -4,14 +4,14 @@ import { element } from "./elements.js";
 import { orbit } from "./navigation.js";
 import { dismiss, notice } from "./notices.js";
 import { fileName, save } from "./save.js";
-import { quickStill } from "./stills.js";
+import { still } from "./stills.js";
 import { scale } from "./vectors.js";
 /** @import { App } from "./app.js" */
 
 const SECONDS = 5;
 const RATE = 25; // frames per second
 const BITS = 8_000_000; // per second
-const WIDEST = 1280; // columns
+const WIDEST = 960; // columns: registers are coarse where there are more, and the film would tremble
 const NARROWEST = 320;
 const SHARE = 0.6; // of a frame's time that its rays may take
 const RAYS = 4; // per pixel
@@ -40,7 +40,7 @@ const KINDS = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "
     isCancelled = true;
   };
   const frames = SECONDS * RATE;
-  context.putImageData(await quickStill(app.painter, view, size), 0, 0);
+  context.putImageData(await still(app.painter, view, size), 0, 0);
   const recorder = new MediaRecorder(canvas.captureStream(RATE), { mimeType: kind, videoBitsPerSecond: BITS });
   /** @type {Blob[]} */ const parts = [];
   recorder.ondataavailable = ({ data }) => parts.push(data);
@@ -51,7 +51,7 @@ const KINDS = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "
   try {
     for (let i = 0, due = performance.now(); i < frames; i++) {
       notice("progress", "Recording a turn", memory.name, { progress: i / frames, cancel });
-      const image = await quickStill(app.painter, orbit(view, (2 * Math.PI * i) / frames, 0), size);
+      const image = await still(app.painter, orbit(view, (2 * Math.PI * i) / frames, 0), size);
       await until(due);
       if (isCancelled) return;
       context.putImageData(image, 0, 0);
