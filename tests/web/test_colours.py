@@ -192,6 +192,17 @@ def test_png_files_are_decoded_as_natively(tmp_path: Path) -> None:
         assert one == {"size": [native.shape[1], native.shape[0]], "sha": sha(native)}, path
 
 
+def test_groups_within_objects_of_obj_are_no_objects(tmp_path: Path) -> None:
+    """A closed object whose sides are groups is filled, as natively."""
+    corners = [f"v {x} {y} {z}" for x, y, z in ((0, 0, 0), (4, 0, 0), (0, 4, 0), (0, 0, 4))]
+    sides = [f"g side_{i}\nf {face}" for i, face in enumerate(("1 3 2", "1 2 4", "1 4 3", "2 3 4"))]
+    (tmp_path / "grouped.obj").write_text("\n".join([*corners, "o wedge", *sides]) + "\n")
+    (found,) = page_builds([tmp_path / "grouped.obj"], depth=5)
+    native = voxrt.build(tmp_path / "grouped.obj", depth=5)
+    assert_same_memory(found, native.rom)
+    assert found["objects"] == objects_of(native)
+
+
 def test_broken_images_are_refused_in_one_line(tmp_path: Path) -> None:
     whole = interlaced_png(noise((13, 17, 3)))
     huge = whole[:16] + struct.pack(">II", 1 << 20, 1 << 20) + whole[24:]
@@ -212,7 +223,12 @@ ASSETS = (
     *("gltf/bevy/CornellBox/CornellBox.glb", "gltf/meshoptimizer/pirate.glb", "gltf/cesium-native/0.gltf"),
     *("gltf/glTF-Blender-IO/24_gpu_instancing.gltf", "gltf/glTF-Transform/functions/test/in/ShapeCollection.glb"),
     *(f"gltf/gltf-pipeline/{name}/{name}.gltf" for name in ("meshopt-fallback", "meshopt-no-fallback")),
-    *("obj/assimp/cube_with_vertexcolors.obj", "obj/assimp/number_formats.obj", "obj/kaolin/amsterdam.obj"),
+    *(
+        "obj/assimp/cube_with_vertexcolors.obj",
+        "obj/assimp/number_formats.obj",
+        "obj/kaolin/amsterdam.obj",
+        "obj/kaolin/pizza.obj",
+    ),
     *(
         "obj/assimp/regr01.obj",
         "obj/assimp/box_UTF16BE.obj",

@@ -95,6 +95,13 @@ def test_a_small_part_is_shown_by_a_click(browser: Browser) -> None:
     assert browser.until(shown("two_objects", 8)), notice(browser)
 
 
+def test_files_that_are_missing_are_named(browser: Browser) -> None:
+    opened(browser)
+    show(browser, EXAMPLES / "house.obj")
+    text = browser.run("return document.querySelector('#warnings').innerText")
+    assert "house.mtl is missing: drop it together with the model." in text
+
+
 def test_a_budget_that_ruins_the_surface_says_so(browser: Browser) -> None:
     opened(browser)
     browser.enter("#budget-words", 600, "change")

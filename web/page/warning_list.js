@@ -34,6 +34,8 @@ export class WarningList {
   }
 
   /** @param {Warning} warning @param {Shown} memory */ #sentence({ kind, message, count }, memory) {
+    const missing = message.match(/'(.+)' (was not found|in the asset's folder)/)?.[1];
+    if (missing) return { text: `${missing} is missing: drop it together with the model.` };
     const list = message.slice(message.indexOf(": ") + 2);
     const names = message.match(/\((.+)\): build/)?.[1];
     /** @type {Record<string, Sentence>} */ const known = {
