@@ -223,12 +223,7 @@ ASSETS = (
     *("gltf/bevy/CornellBox/CornellBox.glb", "gltf/meshoptimizer/pirate.glb", "gltf/cesium-native/0.gltf"),
     *("gltf/glTF-Blender-IO/24_gpu_instancing.gltf", "gltf/glTF-Transform/functions/test/in/ShapeCollection.glb"),
     *(f"gltf/gltf-pipeline/{name}/{name}.gltf" for name in ("meshopt-fallback", "meshopt-no-fallback")),
-    *(
-        "obj/assimp/cube_with_vertexcolors.obj",
-        "obj/assimp/number_formats.obj",
-        "obj/kaolin/amsterdam.obj",
-        "obj/kaolin/pizza.obj",
-    ),
+    *("obj/assimp/cube_with_vertexcolors.obj", "obj/assimp/number_formats.obj", "obj/kaolin/amsterdam.obj"),
     *(
         "obj/assimp/regr01.obj",
         "obj/assimp/box_UTF16BE.obj",

@@ -43,7 +43,6 @@ export async function readFiles(files, voxrt) {
     const formats = FORMATS.map((format) => `.${format}`).join(", ");
     throw new FileError(`${files[0]?.name ?? "nothing"}: is no scene; drop ${formats}`);
   }
-  if (!main.bytes.length) throw new FileError(`${main.name}: is empty; export it again`);
   const known = { name: stem(main.name), file: main.name };
   const kind = extension(main.name);
   try {
@@ -57,6 +56,7 @@ export async function readFiles(files, voxrt) {
       const { readVox } = await import("./vox.js");
       return { ...known, memory: readVox(main.name, main.bytes, voxrt) };
     }
+    if (!main.bytes.length) throw new FileError("is empty; export it again");
     const read = await (READERS.get(kind) ?? usd)();
     const scene = await read(main, new Folder(files), voxrt);
     if (!scene.objects.length) throw new FileError("has no triangles to voxelize; check that the scene shows a mesh");
