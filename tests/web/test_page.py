@@ -80,8 +80,18 @@ def test_the_page_fits_every_screen(browser: Browser, width: int, height: int) -
             "const b = document.querySelector('#stage').getBoundingClientRect(); return [b.width, b.height]"
         )
         assert min(box) > 150
+        cut = "return [...document.querySelectorAll('.chips button')].filter(one => one.scrollWidth > one.clientWidth)"
+        assert browser.run(f"{cut}.map(one => one.textContent)") == []
     finally:
         browser.screen(1280, 800)
+
+
+def test_shadings_are_explained(browser: Browser) -> None:
+    opened(browser)
+    browser.click("[data-shading=report]")
+    says = "document.querySelector('#shading-says')"
+    assert browser.until(f"{says}.textContent.includes('turn away are darker')")
+    assert browser.run(f"return {says}.checkVisibility()")
 
 
 def test_every_control_has_a_name_and_keys_reach_it(browser: Browser) -> None:

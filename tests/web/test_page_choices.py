@@ -26,6 +26,7 @@ from fakes.static_page import (
     saved,
     show,
     shown,
+    shows_exactly,
 )
 from PIL import Image
 
@@ -84,6 +85,22 @@ def test_a_warning_offers_what_mends_it(browser: Browser) -> None:
     assert browser.until(f"{FACTS}.includes('{words:,}') && {RESTS}")
     assert browser.run("return document.querySelector('#fill').value") == "surface"
     assert "filled" not in browser.run("return document.querySelector('#warnings').innerText")
+
+
+def test_a_model_that_lies_on_its_back_is_stood_up_by_a_click(browser: Browser, tmp_path: Path) -> None:
+    path = tmp_path / "cone.obj"
+    corners = ["v 0 0 0", "v 2 0 0", "v 2 2 0", "v 0 2 0", "v 1 1 5"]
+    path.write_text("\n".join([*corners, "f 4 3 2 1", "f 1 2 5", "f 2 3 5", "f 3 4 5", "f 4 1 5"]) + "\n")
+    opened(browser)
+    show(browser, path)
+    assert "up-axis" in {warning.kind for warning in voxrt.build(path, depth=7).warnings}
+    assert "lie on its back" in browser.run("return document.querySelector('#warnings').innerText")
+    browser.click("#warnings button")
+    upright = voxrt.build(path, depth=7, up="z").rom
+    assert browser.until(f"{FACTS}.includes('{len(upright.octree.words):,}') && {RESTS}")
+    rests(browser)
+    assert shows_exactly(browser, upright)
+    assert "lie on its back" not in browser.run("return document.querySelector('#warnings').innerText")
 
 
 def test_a_small_part_is_shown_by_a_click(browser: Browser) -> None:

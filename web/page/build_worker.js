@@ -53,7 +53,7 @@ const calls = {
     const seconds = state.pace?.of === of ? state.pace.seconds * 4 ** depth : undefined;
     report({ text: `Voxelizing ${(2 ** depth).toLocaleString("en")}³`, seconds });
     const built = timed(scene, options, of);
-    const warnings = [...scene.warnings, ...built.warnings];
+    const warnings = [...scene.warnings, ...built.warnings].filter(({ kind }) => up === null || kind !== "up-axis");
     return { ...built, name, file, fill, up, unit, warnings, lighting: built.baked ? FLAT : null };
   },
 };

@@ -6,6 +6,7 @@ import { decodeImage } from "./images.js";
 import { PLYLoader } from "./three/addons/loaders/PLYLoader.js";
 import { STLLoader } from "./three/addons/loaders/STLLoader.js";
 import { Mesh } from "./three/three.core.js";
+import { hintUpAxis } from "./up_axis.js";
 import { sceneOf } from "./voxrt/scene.js";
 import { Warnings } from "./voxrt/warnings.js";
 /** @import { BufferGeometry } from "three" @import { PLYLoader as Loader } from "three/addons/loaders/PLYLoader.js" */
@@ -47,6 +48,7 @@ function withoutReturn(bytes) {
   const { rules, warnings } = await plyLook(main.bytes, geometry, folder, voxrt);
   const scene = bare(geometry, main, voxrt, rules);
   scene.warnings.push(...warnings);
+  hintUpAxis(scene);
   return scene;
 }
 

@@ -5,6 +5,7 @@ import { decodeImage } from "./images.js";
 import { withoutConcave } from "./polygons.js";
 import { MTLLoader } from "./three/addons/loaders/MTLLoader.js";
 import { OBJLoader } from "./three/addons/loaders/OBJLoader.js";
+import { hintUpAxis } from "./up_axis.js";
 import { leftOut, OPAQUE_FROM } from "./voxrt/opacity.js";
 import { colours, sceneOf } from "./voxrt/scene.js";
 import { Warnings } from "./voxrt/warnings.js";
@@ -56,6 +57,7 @@ const objectsOf = (text) => (/^\s*o\s/m.test(text) ? text.replace(/^\s*g\b.*$/gm
     ...looks.rules,
   });
   scene.warnings.push(...warnings.list(), ...looks.warnings);
+  hintUpAxis(scene);
   return scene;
 }
 

@@ -1,7 +1,7 @@
 // What a memory lost or changed: a sentence each, and a button where an option mends it.
 
 import { $, element } from "./elements.js";
-/** @import { App } from "./app.js" @import { Shown } from "./memory.js" @import { Warning } from "./voxrt/voxrt.js" */
+/** @import { App } from "./app.js" @import { Choices } from "./choices.js" @import { Shown } from "./memory.js" @import { Warning } from "./voxrt/voxrt.js" */
 
 /** @typedef {{ text: string, label?: string, mend?: () => void }} Sentence */
 
@@ -43,6 +43,7 @@ export class WarningList {
       "open-surface": { text: "Open parts, like a room without a front, are hollow.", ...this.#fill("solid", memory) },
       "mostly-filled": { text: `Open parts were filled: ${names}.`, ...this.#fill("surface", memory) },
       "one-sided": { text: "Some parts have no clear inside; they were filled.", ...this.#fill("surface", memory) },
+      "up-axis": { text: "It seems to lie on its back.", label: "Stand it up", mend: () => this.#choose({ up: "z" }) },
       "turned-pieces": { text: TURNED },
       "turned-faces": { text: TURNED },
       "default-material": { text: "Parts without a material are grey." },
@@ -53,9 +54,11 @@ export class WarningList {
 
   /** @param {"solid" | "surface"} fill @param {Shown} memory */ #fill(fill, { fixed }) {
     if (fixed) return {};
-    const { choices } = this.app.panel;
-    const label = fill === "solid" ? "Fill them" : "Keep them hollow";
-    return { label, mend: () => choices.choose({ fill }, () => this.app.build()) };
+    return { label: fill === "solid" ? "Fill them" : "Keep them hollow", mend: () => this.#choose({ fill }) };
+  }
+
+  /** @param {Partial<Choices["options"]>} some */ #choose(some) {
+    this.app.panel.choices.choose(some, () => this.app.build());
   }
 
   /** @param {Shown} memory @param {number} levels more */ #resolve({ depth, fixed }, levels) {
