@@ -71,6 +71,22 @@ def test_the_up_axis_and_the_unit_are_those_of_the_command(browser: Browser, tmp
     assert browser.run("return document.querySelector('#up').disabled")
 
 
+def test_fill_and_rule_are_those_of_the_command_and_go_into_links(browser: Browser) -> None:
+    opened(browser)
+    browser.enter("#fill", "surface", "change")
+    rests(browser)
+    browser.enter("#rule", "centre", "change")
+    built = voxrt.build(EXAMPLES / "courtyard.glb", depth=7, fill="surface", rule="centre")
+    words = f"{FACTS}.includes('{len(built.octree.words):,}') && {RESTS}"
+    assert browser.until(words)
+    browser.click("#copy")
+    opened(browser, browser.run("return location.hash"))
+    assert browser.until(words)
+    browser.enter("#fill", "auto", "change")
+    solid = voxrt.build(EXAMPLES / "courtyard.glb", depth=7, rule="centre")
+    assert browser.until(f"{FACTS}.includes('{len(solid.octree.words):,}') && {RESTS}")
+
+
 def test_a_warning_offers_what_mends_it(browser: Browser) -> None:
     """Thin sheets that were filled stay sheets after a click."""
     path = asset("stl/USD-Fileformat-plugins/suzanne.stl")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from fakes.browser import Browser, chromium
+from fakes.browser import RESTS, Browser, chromium
 from fakes.static_page import EXAMPLES, REFUSES, frame_of, notice, opened, rests, saved, show, shown, shows_exactly
 
 import voxrt
@@ -147,9 +147,14 @@ def test_a_link_names_models_elsewhere(browser: Browser, models: str) -> None:
     urls = f"?model={models}/open/house.obj&model={models}/open/house.mtl"
     opened(browser, f"{urls}#depth=6", "house", 6)
     assert shows_exactly(browser, voxrt.build(EXAMPLES / "house.obj", depth=6).rom)
+    browser.enter("#up", "z", "change")
+    turned = voxrt.build(EXAMPLES / "house.obj", depth=6, up="z").rom
+    words = f"document.querySelector('#facts').innerText.includes('{len(turned.octree.words):,}')"
+    assert browser.until(f"{words} && {RESTS}")
     link = copied_link(browser)
-    assert "depth=6" in link
+    assert "depth=6&up=z" in link
     opened(browser, link, "house", 6)
+    assert shows_exactly(browser, turned)
 
 
 def test_a_model_that_cannot_be_fetched_is_named(opened_browser: Browser, models: str) -> None:

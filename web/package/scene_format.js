@@ -2,6 +2,7 @@
 
 /** @typedef {readonly number[]} Triple three numbers */
 /** @typedef {"surface" | "solid" | "auto"} Fill */
+/** @typedef {"touch" | "centre"} Rule which voxels of solids are filled */
 /** @typedef {"repeat" | "mirror" | "clamp"} Wrap */
 
 /** `colour`: sRGB, 0 … 255; `authored`: false for one that replaces a missing material. @typedef {{ name: string,
@@ -39,7 +40,7 @@
 
 /** `depth`: 1 … 16; `colours`: the most for all textures and vertex colours; `bake`: light that is put into the
  * colours; `budget`: the most words that the memory may have; it gives up what is seen least. @typedef {{ depth?:
- * number, fill?: Fill, colours?: number, bake?: Daylight | null, budget?: number | null }} Options */
+ * number, fill?: Fill, rule?: Rule, colours?: number, bake?: Daylight | null, budget?: number | null }} Options */
 
 /** @typedef {Daylight & { voxels: number, colours: number, wordsBefore: number, words: number }} Baked */
 
@@ -53,6 +54,7 @@
  * Baked | null, fitted: Fitted | null }} Built */
 
 /** @type {readonly Fill[]} */ export const FILLS = ["surface", "solid", "auto"];
+/** @type {readonly Rule[]} */ export const RULES = ["touch", "centre"];
 export const DEPTH_LIMIT = 16;
 /** @type {readonly Wrap[]} */ export const WRAPS = ["repeat", "mirror", "clamp"];
 /** @type {Daylight} */ export const DAYLIGHT = { sun: [1, 3, 2], sky: [0.4, 0.4, 0.4], samples: 64 };

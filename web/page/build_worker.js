@@ -47,14 +47,14 @@ const calls = {
     const { name, file, memory, scene: found } = await read(files, source);
     if (memory) return { ...memory, name, file, fixed: true };
     const scene = placed(found, extension(file), { up, unit });
-    const { depth, fill } = options;
+    const { depth, fill, rule } = options;
     const of = JSON.stringify([source, { ...options, depth: null }]);
     if (depth >= LONG && state.pace?.of !== of) timed(scene, { ...options, depth: depth - FEWER }, of);
     const seconds = state.pace?.of === of ? state.pace.seconds * 4 ** depth : undefined;
     report({ text: `Voxelizing ${(2 ** depth).toLocaleString("en")}³`, seconds });
     const built = timed(scene, options, of);
     const warnings = [...scene.warnings, ...built.warnings].filter(({ kind }) => up === null || kind !== "up-axis");
-    return { ...built, name, file, fill, up, unit, warnings, lighting: built.baked ? FLAT : null };
+    return { ...built, name, file, fill, rule, up, unit, warnings, lighting: built.baked ? FLAT : null };
   },
 };
 

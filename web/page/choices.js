@@ -4,17 +4,19 @@ import { $ } from "./elements.js";
 import { extension } from "./folder.js";
 import { UPWARDS } from "./placing.js";
 /** @import { Memory } from "./memory.js" @import { Placing } from "./placing.js" */
-/** @import { Fill } from "./voxrt/voxrt.js" */
+/** @import { Fill, Rule } from "./voxrt/voxrt.js" */
 
 const STATED = "The format of this file states it";
 
 export class Choices {
-  /** @type {Placing & { fill: Fill }} */ options = { up: null, unit: null, fill: "auto" };
+  /** @type {Placing & { fill: Fill, rule: Rule }} */
+  options = { up: null, unit: null, fill: "auto", rule: "touch" };
 
   /** @param {() => void} onChange called when a new memory has to be built */ constructor(onChange) {
     $("up").onchange = () => this.choose({ up: $("up").value }, onChange);
     $("unit").onchange = () => this.choose({ unit: Number($("unit").value) }, onChange);
     $("fill").onchange = () => this.choose({ fill: /** @type {Fill} */ ($("fill").value) }, onChange);
+    $("rule").onchange = () => this.choose({ rule: /** @type {Rule} */ ($("rule").value) }, onChange);
   }
 
   /** @param {Partial<Choices["options"]>} some @param {() => void} onChange */ choose(some, onChange) {
@@ -23,7 +25,7 @@ export class Choices {
   }
 
   /** @param {Memory} memory */ show({ file, fixed }) {
-    const { up, unit, fill } = this.options;
+    const { up, unit, fill, rule } = this.options;
     const upwards = UPWARDS[extension(file)];
     for (const name of /** @type {const} */ (["up", "unit"])) {
       $(name).disabled = !upwards;
@@ -32,6 +34,7 @@ export class Choices {
     $("up").value = (upwards && up) || upwards || "y";
     $("unit").value = String((upwards && unit) || 1);
     $("fill").value = fill;
-    $("fill").disabled = Boolean(fixed);
+    $("rule").value = rule;
+    $("fill").disabled = $("rule").disabled = Boolean(fixed);
   }
 }

@@ -1,14 +1,13 @@
 // Links to a scene and its view: the part of an address after "#". The scene is an example, a file at the address of
 // ?model=, or a packed memory.
 
-import { FIELD_OF_VIEW } from "./camera.js";
-import { FILLS } from "./voxrt/voxrt.js";
-/** @import { Pose } from "./camera.js" @import { Placing } from "./placing.js" */
-/** @import { Daylight, Fill } from "./voxrt/voxrt.js" */
+import { cameraText, readCamera } from "./camera_text.js";
+import { FILLS, RULES } from "./voxrt/voxrt.js";
+/** @import { Placed } from "./camera_text.js" @import { Placing } from "./placing.js" */
+/** @import { Daylight, Fill, Rule } from "./voxrt/voxrt.js" */
 
 /** `memory`: packed. @typedef {Placing & { scene?: string | null, memory?: string | null, depth: number | null, bake:
- * Daylight | null, words: number | null, fill: Fill, camera: Pick<Pose, "eye" | "yaw" | "pitch" | "fov" | "distance">
- * | null }} Link */
+ * Daylight | null, words: number | null, fill: Fill, rule: Rule, camera: Placed | null }} Link */
 
 /** @type {Link} */ const PLAIN = {
   depth: null,
@@ -17,17 +16,14 @@ import { FILLS } from "./voxrt/voxrt.js";
   up: null,
   unit: null,
   fill: "auto",
+  rule: "touch",
   camera: null,
 };
 export const LONGEST = 32_000; // characters: some programs cut longer ones
 const NUMBER = /^-?\d+(\.\d+)?$/;
 
-/** @param {Link["camera"] & {}} view */
-export const cameraText = ({ eye, yaw, pitch, fov, distance }) =>
-  [...eye, yaw, pitch, fov, distance].map((value) => Number(value.toFixed(3))).join(",");
-
 /** @param {Partial<Link>} link */ export function linkOf(link) {
-  const { scene, memory, depth, bake, words, up, unit, fill, camera } = { ...PLAIN, ...link };
+  const { scene, memory, depth, bake, words, up, unit, fill, rule, camera } = { ...PLAIN, ...link };
   const fields = {
     scene,
     depth,
@@ -36,6 +32,7 @@ export const cameraText = ({ eye, yaw, pitch, fov, distance }) =>
     up,
     unit,
     fill: fill === "auto" ? null : fill,
+    rule: rule === "touch" ? null : rule,
     camera: camera && cameraText(camera),
     memory,
   };
@@ -57,12 +54,16 @@ export function readLink(hash) {
     else if (name === "up" && (text === "y" || text === "z")) link.up = text;
     else if (name === "unit" && isList(1) && parts[0] > 0) link.unit = parts[0];
     else if (name === "fill" && isFill(text)) link.fill = text;
+    else if (name === "rule" && isRule(text)) link.rule = text;
     else if (name === "bake" && isDaylight(parts, isList)) link.bake = daylightOf(parts);
-    else if (name === "camera" && isList(7) && isSeeing(parts)) link.camera = cameraOf(parts);
+    else if (name === "camera" && readCamera(text)) link.camera = readCamera(text);
     else throw new Error(`its part ${JSON.stringify(`${name}=${text}`.slice(0, 40))} is not known here`);
   }
   return link;
 }
+
+/** @param {string} text @returns {text is Rule} */
+const isRule = (text) => /** @type {readonly string[]} */ (RULES).includes(text);
 
 /** @param {string} text @returns {text is Fill} */
 const isFill = (text) => /** @type {readonly string[]} */ (FILLS).includes(text);
@@ -75,9 +76,3 @@ function isDaylight(parts, isList) {
 
 /** @param {number[]} parts */
 const daylightOf = ([x, y, z, level, samples]) => ({ sun: [x, y, z], sky: [level, level, level], samples });
-
-/** @param {number[]} parts */
-const isSeeing = ([, , , , , fov, distance]) => fov >= FIELD_OF_VIEW.min && fov <= FIELD_OF_VIEW.max && distance > 0;
-
-/** @param {number[]} parts */
-export const cameraOf = ([x, y, z, yaw, pitch, fov, distance]) => ({ eye: [x, y, z], yaw, pitch, fov, distance });

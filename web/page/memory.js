@@ -16,7 +16,7 @@ export const PLAIN = { position: [0, 0, 0], ambient: 90, on: false, flat: false,
  * author; `manifest`: that it came with. @typedef {{ name: string, file: string, words: Uint32Array, depth: number,
  * materials: Required<Material>[], grid: { origin: readonly number[], voxelSize: number } | null, objects:
  * object[], warnings: Warning[], lighting?: Lighting | null, view?: Registers | null, manifest?: Manifest | null,
- * baked?: Baked | null, fitted?: Fitted | null, fill?: string, up?: string |
+ * baked?: Baked | null, fitted?: Fitted | null, fill?: string, rule?: string, up?: string |
  * null, unit?: number | null, seconds?: number, fixed?: boolean }} Memory */
 
 /** @typedef {Memory & { voxels: number[], bounds: Box }} Shown with voxels by material */

@@ -48,8 +48,8 @@ export class MemoryPanel {
 
   /** @param {{ depth?: number | null, bake?: Daylight | null, words?: number | null } &
    * Partial<Choices["options"]>} options */
-  set({ depth = null, bake = null, words = null, up = null, unit = null, fill = "auto" }) {
-    this.choices.options = { up, unit, fill };
+  set({ depth = null, bake = null, words = null, up = null, unit = null, fill = "auto", rule = "touch" }) {
+    this.choices.options = { up, unit, fill, rule };
     if (depth !== null) $("depth").valueAsNumber = depth;
     if (bake) this.daylight.set(bake);
     this.budget.words = words;

@@ -1,8 +1,9 @@
 // "Copy link", and "Save as one page": a file with the memory and all that shows it, which opens without a server.
 
+import { cameraText } from "./camera_text.js";
 import { manifestOf } from "./downloads.js";
 import { $ } from "./elements.js";
-import { cameraText, LONGEST, linkOf } from "./links.js";
+import { LONGEST, linkOf } from "./links.js";
 import { notice } from "./notices.js";
 import { save } from "./save.js";
 /** @import { App } from "./app.js" @import { Shown } from "./memory.js" */

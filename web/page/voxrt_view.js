@@ -5,11 +5,11 @@
 
 import { BandPicture } from "./band_picture.js";
 import { measure } from "./camera.js";
+import { readCamera } from "./camera_text.js";
 import { firstView, limitOf } from "./first_view.js";
 import { stem } from "./folder.js";
 import { FrameRequests } from "./frame_requests.js";
 import { Gestures } from "./gestures.js";
-import { cameraOf } from "./links.js";
 import { FIRST_LOOK, nextLook, shadingOf } from "./looks.js";
 import { boundsOf, worldOf } from "./memory.js";
 import { dolly, frame, orbit, pan } from "./navigation.js";
@@ -128,8 +128,7 @@ class VoxrtView extends HTMLElement {
     painter.on("trouble", (problem) => this.#say(problem));
     painter.on("frame", (bands) => picture.showBands(bands, frames.receive(bands)));
     const first = firstView(memory, frames.size);
-    const camera = this.getAttribute("camera")?.split(",").map(Number);
-    viewpoint.reset(camera ? { ...first, ...cameraOf(camera) } : first);
+    viewpoint.reset({ ...first, ...readCamera(this.getAttribute("camera")) });
     frames.change();
     const gestures = steer(canvas, viewpoint, memory, () => frames.size);
     const animate = () => {

@@ -285,8 +285,9 @@ EXPORT(vx_scene_end) double vx_scene_end() {
     });
 }
 
-/// Voxelizes the scene and builds its octree; returns 0. `fill`: 0 surface, 1 solid, 2 auto. `colours`: 1 … 254.
-EXPORT(vx_voxelize) int vx_voxelize(int depth, int fill, int colours) {
+/// Voxelizes the scene and builds its octree; returns 0. `fill`: 0 surface, 1 solid, 2 auto. `rule`: 0 touch, 1 centre.
+/// `colours`: 1 … 254.
+EXPORT(vx_voxelize) int vx_voxelize(int depth, int fill, int rule, int colours) {
     return guarded([&] {
         if (depth < 1 || depth > 16)
             throw std::invalid_argument("depth must be 1 … 16");
@@ -310,7 +311,10 @@ EXPORT(vx_voxelize) int vx_voxelize(int depth, int fill, int colours) {
             parts.push_back({voxelize::PartKind::mesh, &mesh.view, frames.back().data(), mesh.only_material,
                              static_cast<uint32_t>(i)});
         }
-        const voxelize::SparseVoxels voxels = voxelize::voxelize(depth, parts, scene.objects.size(), fill_of(fill), 1);
+        if (rule < 0 || rule > 1)
+            throw std::invalid_argument("the rule must be 0 or 1");
+        const voxelize::SparseVoxels voxels = voxelize::voxelize(depth, parts, scene.objects.size(), fill_of(fill), 1,
+                                                                 {static_cast<voxelize::Rule>(rule)});
         report(voxels);
         result.words = octree::build(voxels.view(), 1);
         return 0;
