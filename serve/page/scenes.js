@@ -60,7 +60,7 @@ export class Scenes {
   /** @param {File[]} files */ open(files) {
     if (!files.length) return;
     this.load(files[0].name, async (report, signal) => {
-      const name = await uploadFiles(this.app.connection, files, report, signal);
+      const { name } = await uploadFiles(this.app.connection, files, report, signal);
       this.#opened.set(name, files);
       if (this.app.connection.hello) this.hello(this.app.connection.hello);
       this.show(this.app.state());

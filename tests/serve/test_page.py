@@ -115,6 +115,7 @@ def test_page(tmp_path):
 def test_scenes_that_were_opened_stay_in_the_list(tmp_path):
     files = write_rom(tmp_path, rom_of("second", worlds.ball(4), 4))
     with shown_page(scene_of("first", worlds.boxes(4, 9, 3), 4)) as (browser, _):
+        assert browser.until(f"{RESTS} && document.querySelector('#scene').innerText === 'first'")
         browser.give_files("#files", [str(files.mem), str(files.manifest)])
         for name in ("second", "first", "second"):
             assert browser.until(f"document.querySelector('#panel [data-scene={name}]')?.disabled === false")
