@@ -68,7 +68,10 @@ def frame_of(browser: Browser) -> tuple[dict, list[int], np.ndarray]:
     script = """
         const done = arguments[0];
         const { camera, width, height } = window.voxrt.newest;
-        const text = window.voxrt.colours().reduce((text, byte) => text + String.fromCharCode(byte), "");
+        const colours = window.voxrt.colours();
+        let text = "";
+        for (let at = 0; at < colours.length; at += 1 << 14)
+            text += String.fromCharCode(...colours.subarray(at, at + (1 << 14)));
         done({ camera, size: [width, height], pixels: btoa(text) });
     """
     got = browser.run_async(script)

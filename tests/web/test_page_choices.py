@@ -139,9 +139,12 @@ def test_a_budget_that_ruins_the_surface_says_so(browser: Browser) -> None:
     opened(browser)
     browser.enter("#budget-words", 600, "change")
     warned = "document.querySelector('#warnings').innerText"
-    assert browser.until(f"{warned}.includes('% of the surface') && {RESTS}"), notice(browser)
+    assert browser.until(f"{warned}.includes('of the surface') && {RESTS}"), notice(browser)
+    depth, words = voxrt.build(EXAMPLES / "courtyard.glb", depth=7, budget=600).budget.lossless
+    assert f"{2**depth}\u00b3 fits without loss" in browser.run(f"return {warned}")
     browser.click("#warnings button")
-    assert browser.until(shown("courtyard", 6)), notice(browser)
+    assert browser.until(shown("courtyard", depth)), notice(browser)
+    assert f"{words:,}" in browser.run(f"return {FACTS}")
 
 
 def test_a_long_build_has_a_bar_and_can_be_cancelled(browser: Browser) -> None:

@@ -29,7 +29,8 @@
  * normals?: Normals }} Mesh */
 
 /** `mesh`: index into the scene's meshes; `transform`: rows of a 3 x 4 matrix to the scene frame: right-handed,
- * metres, y up. @typedef {{ name: string, mesh: number, transform: ArrayLike<number> }} SceneObject */
+ * metres, y up; `rule`: its own one. @typedef {{ name: string, mesh: number, transform: ArrayLike<number>, rule?: Rule |
+ * null }} SceneObject */
 
 /** @typedef {{ materials: Material[], meshes: Mesh[], objects: SceneObject[] }} Scene */
 /** @typedef {{ kind: string, message: string, count: number }} Warning */

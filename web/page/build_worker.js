@@ -13,6 +13,7 @@ import { answerWith } from "./worker_answers.js";
 
 const LONG = 10; // levels: builds of more are estimated by one of fewer
 const FEWER = 3; // levels
+const RUIN = 0.1; // part of the surface: a budget that changes more has a finest resolution that fits without loss
 
 const state = {
   /** @type {Voxrt | null} */ voxrt: null,
@@ -53,10 +54,23 @@ const calls = {
     const seconds = state.pace?.of === of ? state.pace.seconds * 4 ** depth : undefined;
     report({ text: `Voxelizing ${(2 ** depth).toLocaleString("en")}³`, seconds });
     const built = timed(scene, options, of);
+    const { fitted } = built;
+    const isRuin = fitted !== null && fitted.changed > RUIN * fitted.surface;
     const warnings = [...scene.warnings, ...built.warnings].filter(({ kind }) => up === null || kind !== "up-axis");
-    return { ...built, name, file, fill, rule, up, unit, warnings, lighting: built.baked ? FLAT : null };
+    const lossless = isRuin ? finestThatFits(scene, options, fitted.words) : null;
+    return { ...built, name, file, fill, rule, up, unit, warnings, lossless, lighting: built.baked ? FLAT : null };
   },
 };
+
+/** The finest resolution whose memory has at most so many words without a budget. @param {ReadScene} scene @param
+ * {BuildOptions} options @param {number} most words */
+function finestThatFits(scene, options, most) {
+  for (let depth = options.depth - 1; depth > 0; depth--) {
+    const { words } = loaded().voxelize(scene, { ...options, depth, budget: null });
+    if (words.length <= most) return { depth, words: words.length };
+  }
+  return null;
+}
 
 /** @param {ReadScene} scene @param {BuildOptions} options @param {string} of what is built, and how */
 function timed(scene, options, of) {

@@ -6,7 +6,6 @@ import { $, element } from "./elements.js";
 /** @typedef {{ text: string, label?: string, mend?: () => void }} Sentence */
 
 const MOST = 3; // sentences that are shown at once
-const RUINED = 0.1; // part of the surface that a budget may change
 const TURNED = "Some faces look inwards; they were turned.";
 
 /** @param {number} depth */ const side = (depth) => `${(2 ** depth).toLocaleString("en")}³`;
@@ -17,20 +16,24 @@ export class WarningList {
   }
 
   /** @param {Shown} memory */ show(memory) {
-    const { fitted } = memory;
     const sentences = new Map(
       memory.warnings.map((warning) => this.#sentence(warning, memory)).map((one) => [one.text, one]),
     );
-    const changed = fitted ? fitted.changed / (fitted.surface || 1) : 0;
-    const ruin = {
-      text: `The budget changed ${(100 * changed).toFixed(1)} % of the surface.`,
-      ...this.#resolve(memory, -1),
-    };
     const found = [...sentences.values()].sort((a, b) => Number(Boolean(b.mend)) - Number(Boolean(a.mend)));
-    const all = [...(changed > RUINED ? [ruin] : []), ...found].map((one) => this.#row(one));
+    const all = [...this.#ruin(memory), ...found].map((one) => this.#row(one));
     const rest = all.splice(MOST);
     const more = element("details", {}, element("summary", {}, `${rest.length} more`), element("ul", {}, ...rest));
     $("warnings").replaceChildren(...all, ...(rest.length ? [element("li", {}, more)] : []));
+  }
+
+  /** What a budget gave up, if it is much. @param {Shown} memory @returns {Sentence[]} */
+  #ruin({ rule, fitted, lossless }) {
+    if (!fitted || !lossless) return [];
+    const part = `${((100 * fitted.changed) / fitted.surface).toFixed(0)} %`;
+    const text = `The budget gives up ${part} of the surface. ${side(lossless.depth)} fits without loss.`;
+    const coarse = { text: "Coarse voxels look nearer to the model by rule Centre.", label: "Use Centre" };
+    const mend = () => this.#choose({ rule: "centre" });
+    return [{ text, ...this.#resolve(lossless.depth) }, ...(rule === "touch" ? [{ ...coarse, mend }] : [])];
   }
 
   /** @param {Warning} warning @param {Shown} memory */ #sentence({ kind, message, count }, memory) {
@@ -39,7 +42,10 @@ export class WarningList {
     const list = message.slice(message.indexOf(": ") + 2);
     const names = message.match(/\((.+)\): build/)?.[1];
     /** @type {Record<string, Sentence>} */ const known = {
-      "no-voxels": { text: `Too small to show at ${side(memory.depth)}: ${list}.`, ...this.#resolve(memory, 1) },
+      "no-voxels": {
+        text: `Too small to show at ${side(memory.depth)}: ${list}.`,
+        ...(memory.fixed ? {} : this.#resolve(memory.depth + 1)),
+      },
       "open-surface": { text: "Open parts, like a room without a front, are hollow.", ...this.#fill("solid", memory) },
       "mostly-filled": { text: `Open parts were filled: ${names}.`, ...this.#fill("surface", memory) },
       "one-sided": { text: "Some parts have no clear inside; they were filled.", ...this.#fill("surface", memory) },
@@ -61,16 +67,13 @@ export class WarningList {
     this.app.panel.choices.choose(some, () => this.app.build());
   }
 
-  /** @param {Shown} memory @param {number} levels more */ #resolve({ depth, fixed }, levels) {
-    const better = depth + levels;
-    if (fixed || better < Number($("depth").min) || better > Number($("depth").max)) return {};
-    return {
-      label: `Use ${side(better)}`,
-      mend: () => {
-        $("depth").valueAsNumber = better;
-        this.app.build();
-      },
+  /** @param {number} depth */ #resolve(depth) {
+    if (depth < Number($("depth").min) || depth > Number($("depth").max)) return {};
+    const mend = () => {
+      $("depth").valueAsNumber = depth;
+      this.app.build();
     };
+    return { label: `Use ${side(depth)}`, mend };
   }
 
   /** @param {Sentence} sentence */ #row({ text, label, mend }) {
