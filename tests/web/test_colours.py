@@ -198,7 +198,7 @@ def test_objects_of_gltf_have_rules_of_their_own(tmp_path: Path) -> None:
     length = int.from_bytes(glb[12:16], "little")
     described = json.loads(glb[20 : 20 + length])
     files = []
-    for rule in ("centre", "round"):
+    for rule in ("half", "round"):
         for shown in (one for one in described["nodes"] if "mesh" in one):
             shown["extras"] = {**shown.get("extras", {}), "voxrt_rule": rule}
         text = json.dumps(described).encode()
@@ -211,7 +211,7 @@ def test_objects_of_gltf_have_rules_of_their_own(tmp_path: Path) -> None:
     native = voxrt.build(files[0], depth=6).rom
     assert_same_memory(found, native)
     assert found["words"] != sha(voxrt.build(ROOT / "examples" / "courtyard.glb", depth=6).octree.words)
-    assert "is no rule; name one of touch, centre" in refused["problem"]
+    assert "is no rule; name one of touch, centre, half" in refused["problem"]
 
 
 def test_groups_within_objects_of_obj_are_no_objects(tmp_path: Path) -> None:

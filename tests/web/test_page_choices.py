@@ -83,8 +83,10 @@ def test_fill_and_rule_are_those_of_the_command_and_go_into_links(browser: Brows
     opened(browser, browser.run("return location.hash"))
     assert browser.until(words)
     browser.enter("#fill", "auto", "change")
-    solid = voxrt.build(EXAMPLES / "courtyard.glb", depth=7, rule="centre")
-    assert browser.until(f"{FACTS}.includes('{len(solid.octree.words):,}') && {RESTS}")
+    for rule in ("centre", "half"):
+        browser.enter("#rule", rule, "change")
+        solid = voxrt.build(EXAMPLES / "courtyard.glb", depth=7, rule=rule)
+        assert browser.until(f"{FACTS}.includes('{len(solid.octree.words):,}') && {RESTS}")
 
 
 def test_a_warning_offers_what_mends_it(browser: Browser) -> None:

@@ -2,7 +2,7 @@
 
 /** @typedef {readonly number[]} Triple three numbers */
 /** @typedef {"surface" | "solid" | "auto"} Fill */
-/** @typedef {"touch" | "centre"} Rule which voxels of solids are filled */
+/** @typedef {"touch" | "centre" | "half"} Rule which voxels of solids are filled */
 /** @typedef {"repeat" | "mirror" | "clamp"} Wrap */
 
 /** `colour`: sRGB, 0 … 255; `authored`: false for one that replaces a missing material. @typedef {{ name: string,
@@ -55,7 +55,7 @@
  * Baked | null, fitted: Fitted | null }} Built */
 
 /** @type {readonly Fill[]} */ export const FILLS = ["surface", "solid", "auto"];
-/** @type {readonly Rule[]} */ export const RULES = ["touch", "centre"];
+/** @type {readonly Rule[]} */ export const RULES = ["touch", "centre", "half"];
 export const DEPTH_LIMIT = 16;
 /** @type {readonly Wrap[]} */ export const WRAPS = ["repeat", "mirror", "clamp"];
 /** @type {Daylight} */ export const DAYLIGHT = { sun: [1, 3, 2], sky: [0.4, 0.4, 0.4], samples: 64 };

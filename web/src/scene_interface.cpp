@@ -243,13 +243,13 @@ EXPORT(vx_normals) int vx_normals(const double* directions, size_t count, const 
 }
 
 /// Places a mesh. `transform`: rows of 3x4, to the scene frame in metres, y up. `name`: UTF-8. `rule`: 0 touch, 1
-/// centre, -1 that of vx_voxelize.
+/// centre, 2 half, -1 that of vx_voxelize.
 EXPORT(vx_object) int vx_object(int mesh, const double* transform, const char* name, int rule) {
     return guarded([&] {
         if (mesh < 0 || static_cast<size_t>(mesh) >= scene.meshes.size())
             throw std::invalid_argument("there is no mesh " + std::to_string(mesh));
-        if (rule < -1 || rule > 1)
-            throw std::invalid_argument("the rule of an object must be -1, 0 or 1");
+        if (rule < -1 || rule > 2)
+            throw std::invalid_argument("the rule of an object must be -1, 0, 1 or 2");
         Object object{static_cast<size_t>(mesh), {}, name, rule};
         std::copy_n(transform, 12, object.transform.begin());
         scene.objects.push_back(std::move(object));
@@ -288,14 +288,14 @@ EXPORT(vx_scene_end) double vx_scene_end() {
     });
 }
 
-/// Voxelizes the scene and builds its octree; returns 0. `fill`: 0 surface, 1 solid, 2 auto. `rule`: 0 touch, 1 centre.
-/// `colours`: 1 … 254.
+/// Voxelizes the scene and builds its octree; returns 0. `fill`: 0 surface, 1 solid, 2 auto. `rule`: 0 touch, 1 centre,
+/// 2 half./// `colours`: 1 … 254.
 EXPORT(vx_voxelize) int vx_voxelize(int depth, int fill, int rule, int colours) {
     return guarded([&] {
         if (depth < 1 || depth > 16)
             throw std::invalid_argument("depth must be 1 … 16");
-        if (rule < 0 || rule > 1)
-            throw std::invalid_argument("the rule must be 0 or 1");
+        if (rule < 0 || rule > 2)
+            throw std::invalid_argument("the rule must be 0, 1 or 2");
         if (colours < 1 || colours > 254)
             throw std::invalid_argument("colours must be 1 … 254");
         result = {};
