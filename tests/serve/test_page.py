@@ -120,6 +120,7 @@ def test_scenes_that_were_opened_stay_in_the_list(tmp_path):
         for name in ("second", "first", "second"):
             assert browser.until(f"document.querySelector('#panel [data-scene={name}]')?.disabled === false")
             browser.click(f"#panel [data-scene={name}]")
+            assert browser.until("document.querySelector('#notice').hidden")
             assert browser.until(f"document.querySelector('#scene').innerText === '{name}'")
             assert browser.until(f"document.querySelector('#panel [data-scene={name}]').ariaPressed === 'true'")
         assert browser.faults() == []
