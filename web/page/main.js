@@ -73,7 +73,9 @@ function inspect(app) {
     const text = `${JSON.stringify(manifestOf(memory), null, 2)}\n`;
     save(new Blob([text], { type: "application/json" }), `${memory.name}.json`);
   };
-  const fail = (/** @type {Error} */ { message }) => notice("error", "This cannot be saved", message);
+  const fail = (/** @type {Error} */ { message }) => {
+    if (message !== "cancelled") notice("error", "This cannot be saved", message); // another memory came
+  };
   $("save").onclick = () => import("./stills.js").then(({ savePicture }) => savePicture(app)).catch(fail);
   $("turntable").onclick = () => import("./turntable.js").then(({ record }) => record(app)).catch(fail);
 }
