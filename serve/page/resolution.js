@@ -7,7 +7,7 @@
 const MOVING = 0.05; // seconds that a frame may take while the camera moves
 const STEP = 1; // seconds: a finer frame that takes longer than this comes after one of half its columns
 const LONGEST = 60; // seconds that a frame may take at all
-const SMOOTH = 2; // seconds that a frame with four rays per pixel may take
+const SMOOTH = 0.5; // seconds that a frame with four rays per pixel may take, where the device names no others
 const COARSEST = 8; // part of the columns and rows
 const PIXELS = 1 << 22; // of a frame, where the device names no other number
 const RATIO = 2; // of the screen's pixels to those of the page, at most
@@ -36,7 +36,7 @@ export class Resolution {
     const smooth =
       !this.fixed &&
       this.cost !== null &&
-      Math.min(this.cost, this.#newest) * doubled[0] * doubled[1] <= SMOOTH &&
+      Math.min(this.cost, this.#newest) * doubled[0] * doubled[1] <= (device.smooth ?? SMOOTH) &&
       doubled[0] * doubled[1] <= (device.pixels ?? PIXELS) &&
       doubled.every((side, i) => side <= device.size[i]) &&
       doubled[0] % device.width_step === 0;

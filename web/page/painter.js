@@ -10,11 +10,12 @@ import { Hand } from "./hand.js";
 /** @import { Look } from "./voxrt/voxrt.js" @import { PaintCalls } from "./paint_worker.js" */
 
 const TILE = 16; // rows of pixels
-const BANDS = 3; // per worker: they cost differently
+const BANDS = 3; // per worker, or more: they cost differently
+const BAND = 1 << 18; // pixels that a band may have: the camera waits for as many when it starts to move
 const AHEAD = 2; // bands per worker: it renders one while the next one waits there
 const MOST = 8; // workers
 const MEMORY = 1 << 30; // bytes of words in all workers
-const LIMITS = { size: [4096, 4096], pixels: 1 << 24, width_step: 1, position_limit: 2 ** 27 };
+const LIMITS = { size: [4096, 4096], pixels: 1 << 24, smooth: 2, width_step: 1, position_limit: 2 ** 27 };
 const DEVICE = { name: "this browser", features: ["light", "mirrors"], ...LIMITS };
 
 /** A frame that is rendered. `since`: when it was requested; `left`: bands that are not rendered; `aside`: who waits
@@ -93,9 +94,19 @@ const DEVICE = { name: "this browser", features: ["light", "mirrors"], ...LIMITS
   /** Request a frame; returns its number. @param {{ camera: Registers, size: Size }} view */
   changeView({ camera, size }) {
     const request = ++this.#request;
+    this.#drop(2 * size[0] * size[1]);
     this.sent.set(request, performance.now());
     this.#begin(request, camera, size, null);
     return request;
+  }
+
+  /** Leave frames of more pixels unfinished: the camera has moved since they were requested. @param {number} pixels */
+  #drop(pixels) {
+    this.#queue = this.#queue.filter(({ job }) => {
+      const isStale = !job.aside && job.size[0] * job.size[1] > pixels;
+      if (isStale) this.sent.delete(job.request);
+      return !isStale;
+    });
   }
 
   /** Render a frame that is not shown. Rejects when another memory comes first. @param {{ camera: Registers, size: Size
@@ -107,7 +118,8 @@ const DEVICE = { name: "this browser", features: ["light", "mirrors"], ...LIMITS
   /** @param {number} request @param {Registers} camera @param {Size} size @param {Aside | null} aside */
   #begin(request, camera, size, aside) {
     const tiles = Math.ceil(size[1] / TILE);
-    const step = Math.max(1, Math.ceil(tiles / (BANDS * this.#artists.length)));
+    const most = Math.ceil(BAND / (TILE * size[0]));
+    const step = Math.max(1, Math.min(most, Math.ceil(tiles / (BANDS * this.#artists.length))));
     const left = Math.ceil(tiles / step);
     const known = { request, camera, size, since: performance.now(), scene: this.#scene, aside };
     /** @type {Job} */ const job = { ...known, left, began: null, bands: [] };
