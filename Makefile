@@ -8,7 +8,7 @@ PACKAGE := $(shell find CMakeLists.txt pyproject.toml LICENSE README.md voxrt vo
 INSTALLED := $(VENV)/.installed $(VENV)/.dependencies
 CXX_FILES = $(shell find voxelize octree sim web examples tests -name '*.cpp' -o -name '*.h')
 
-.PHONY: help demo configurations test quick assets slow lint lint-scripts lint-workflows hardware boards docs site web bench soak sanitize fuzz clean
+.PHONY: help demo configurations test quick assets slow lint lint-scripts lint-workflows hardware boards docs site pages web bench soak sanitize fuzz clean
 .DELETE_ON_ERROR:
 
 help:
@@ -23,6 +23,7 @@ help:
 	@echo "make boards  build the designs of the boards anew, place and route them, simulate what was placed"
 	@echo "make docs    build the manual into build/docs"
 	@echo "make site    build the static page into build/site: WebAssembly, for any web server"
+	@echo "make pages   the manual with the static page in its folder try, for a web host: build/pages"
 	@echo "make web     build the static page, test it in Node and in a browser"
 	@echo "make bench   run the benchmarks"
 	@echo "make soak MINUTES=15  load and attack the frame server, write bench/results/soak.md"
@@ -127,6 +128,11 @@ docs: $(INSTALLED) $(VENV)/.docs
 # It needs npm, which fetches the loaders of three.js and the compiler of TypeScript.
 site: $(INSTALLED) $(VENV)/.web web/node_modules/.package-lock.json
 	$(BIN)/python web/make_site.py
+
+pages: docs site
+	rm -rf build/pages
+	cp -r build/docs build/pages
+	cp -r build/site build/pages/try
 
 web: site $(VENV)/.tools
 	VOXRT_EXPECT_INSTALLED=1 $(BIN)/pytest tests/web

@@ -34,6 +34,14 @@ def build(jobs: int | None = None) -> Path:
     return link(WASM, our_units(), jobs)
 
 
+def build_view(jobs: int | None = None) -> Path:
+    """Link, and return, a module that shows memories and builds none: a third of the other one."""
+    link_headers()
+    calls = ROOT / "web" / "src"
+    units = [unit for unit in our_units() if unit.source.parent != calls or unit.source.name == "interface.cpp"]
+    return link(BUILD / "voxrt_view.wasm", units, jobs)
+
+
 def our_units() -> list[Unit]:
     """Return the native sources, and those of the C interface."""
     flags = (*zig("c++"), *COMPILED, "-I", str(BUILD / "include"))

@@ -2,9 +2,9 @@
 
 It holds the page (web/page), what it shares with the page of the server (serve/page), the npm package (web/package)
 with the modules of web/build_voxrt.py and web/build_hardware.py, the loaders of three.js from npm without their
-manuals, and example scenes. Nothing is bundled.
+manuals, and example scenes. Nothing is bundled but voxrt-view.js, the custom element; the core of three.js is minified.
 
-    npm ci --prefix web                # three.js and TypeScript, as web/package-lock.json pins them
+    npm ci --prefix web                # three.js, esbuild and TypeScript, as web/package-lock.json pins them
     python web/make_site.py            # needs the package voxrt, and the group `web` of pyproject.toml
     python -m http.server -d build/site
 """
@@ -16,11 +16,12 @@ import re
 import shutil
 import subprocess
 import sys
+import zlib
 from pathlib import Path
 
 from board_files import add_boards
 from build_hardware import build_hardware
-from build_voxrt import build
+from build_voxrt import build, build_view
 from compiler import BUILD, ROOT
 
 import voxrt
@@ -37,10 +38,10 @@ TYPES = re.compile(r"^[ \t]*/\*\*(?:(?!\*/)[\s\S])*\*/\n|/\*\*(?:(?!\*/)[\s\S])*
 IMPORT = re.compile(r"""(from\s+)(['"])([^'"]+)\2""")
 
 SHARED = (
-    "camera.js", "controls.css", "crc32.js", "drop.js", "elements.js", "events.js", "figures.js", "flight.js",
-    "frame_requests.js", "gestures.js", "glide.js", "icon.svg", "light.js", "navigation.js", "notices.js",
-    "picture.js", "pilot.js", "resolution.js", "save.js", "style.css", "tools.js", "vectors.js", "viewpoint.js",
-    "views.js",
+    "camera.js", "camera_text.js", "controls.css", "crc32.js", "drop.js", "elements.js", "events.js", "figures.js",
+    "flight.js", "frame_requests.js", "gestures.js", "glide.js", "icon.svg", "light.js", "navigation.js",
+    "notices.js", "picture.js", "pilot.js", "resolution.js", "save.js", "style.css", "tools.js", "vectors.js",
+    "viewpoint.js", "views.js",
 )  # fmt: skip
 """Files of the server's page."""
 
@@ -78,6 +79,7 @@ def make_site(*modules: Path) -> None:
             TYPES.sub("", script.read_text(encoding="utf-8")), encoding="utf-8"
         )  # no types, as for three.js
     shutil.copyfile(ROOT / "LICENSE", made / "LICENSE")
+    bundle_view(made)
     (made / "package.json").write_text('{"private": true, "type": "module"}\n')  # for Node
     add_three(made / "three")
     add_examples(made / "examples")
@@ -105,6 +107,25 @@ def make_package(modules: tuple[Path, ...]) -> None:
     subprocess.run(compiler, cwd=ROOT, check=True)
 
 
+def bundle_view(site: Path) -> None:
+    """Make one file of the custom element and all that it needs, for the site and for the package."""
+    script, module = site / "paint_worker.txt", site / "voxrt.wasm.zlib"
+    bundle(site / "paint_worker.js", script, "--format=iife")
+    module.write_bytes(zlib.compress(build_view().read_bytes(), 9))
+    bundle(
+        site / "voxrt_view.js", site / "voxrt-view.js", "--format=esm", "--loader:.txt=text", "--loader:.zlib=binary"
+    )
+    for path in (script, module, site / "voxrt_view.js"):
+        path.unlink()
+    shutil.copyfile(site / "voxrt-view.js", PACKAGE / "voxrt-view.js")
+
+
+def bundle(entry: Path, made: Path, *options: str) -> None:
+    """Make one script of a module and of what it imports."""
+    esbuild = (MODULES / ".bin" / "esbuild", "--bundle", "--minify", "--log-level=warning")
+    subprocess.run((*esbuild, *options, entry, f"--outfile={made}"), check=True)
+
+
 def add_examples(folder: Path) -> None:
     """Copy the example scenes; build the memory of the one that only voxrt reads."""
     folder.mkdir()
@@ -120,8 +141,7 @@ def add_three(folder: Path) -> None:
     package = MODULES / "three"
     folder.mkdir()
     shutil.copyfile(package / "LICENSE", folder / "LICENSE")
-    core = (package / "build" / "three.core.js").read_text(encoding="utf-8")
-    (folder / "three.core.js").write_text(without_manual(core), encoding="utf-8")
+    bundle(package / "build" / "three.core.js", folder / "three.core.js", "--format=esm")
     add_draco(package / "examples" / "jsm" / "libs" / "draco" / "gltf", folder / "draco")
     waiting = list(ADDONS)
     while waiting:

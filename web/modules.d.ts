@@ -15,6 +15,10 @@ declare module "*/voxrt/voxrt.js" { export * from "voxrt/voxrt.js"; }
 declare module "*/voxrt/warnings.js" { export * from "voxrt/warnings.js"; }
 declare module "*/voxrt/words.js" { export * from "voxrt/words.js"; }
 
+// What web/make_site.py puts into voxrt-view.js: a script as text, a module in zlib's bytes.
+declare module "*.txt" { const text: string; export default text; }
+declare module "*.zlib" { const bytes: Uint8Array<ArrayBuffer>; export default bytes; }
+
 // @types/three leaves these classes out.
 declare module "*/loaders/usd/USDAParser.js" { export const USDAParser: new () => import("./page/usd/three_private.js").TextParser; }
 declare module "*/loaders/usd/USDCParser.js" { export const USDCParser: new () => import("./page/usd/three_private.js").CrateParser; }

@@ -12,6 +12,7 @@ import { focus } from "./navigation.js";
 import { dismiss, hideAway, notice, showAway } from "./notices.js";
 import { Picture } from "./picture.js";
 import { Player } from "./player.js";
+import { SceneLink } from "./scene_link.js";
 import { Scenes } from "./scenes.js";
 import { add, scale } from "./vectors.js";
 import { Viewpoint } from "./viewpoint.js";
@@ -20,6 +21,7 @@ import { Views } from "./views.js";
 /** @import { Frame, Hello, State, View } from "./protocol.js" @import { Move } from "./viewpoint.js" */
 
 const CONTROLS = "#panel :is(button, input, select), #empty button, #frame, #player :is(button, input), #pad button";
+const ALWAYS = ["help", "copy"]; // work without control
 
 export class App {
   /** @type {number | null} the scene to which the view belongs */ #scene = null;
@@ -38,6 +40,7 @@ export class App {
     this.views = new Views(this);
     this.light = new Light(this);
     this.advanced = new Advanced(this);
+    this.link = new SceneLink(this);
     this.connection.on("hello", (hello) => this.#greet(hello));
     this.connection.on("disconnected", (away) => this.#leave(away));
     this.connection.on("state", (state) => this.#show(state));
@@ -163,7 +166,7 @@ export class App {
     $("details").textContent =
       scene.number === 0 ? "" : `${2 ** scene.depth}³ voxels · ${scene.words.toLocaleString()} words`;
     $("picture").style.backgroundColor = `rgb(${view.background.join()})`;
-    for (const panel of [this.scenes, this.player, this.light, this.advanced]) panel.show(state);
+    for (const panel of [this.scenes, this.player, this.light, this.advanced, this.link]) panel.show(state);
     $("connection").dataset.state = trouble ? "disconnected" : "connected";
     $("connection").textContent = trouble ? "no frames" : this.device().name;
     if (trouble) notice("error", "There are no frames", trouble);
@@ -184,7 +187,7 @@ export class App {
     const others = viewers > 1 ? `you have control · ${viewers} viewers` : "";
     const owner = controller === null ? "nobody has control" : `viewer ${controller} has control`;
     $("control").textContent = !mine ? owner : waiting.length ? `viewer ${waiting[0]} asks for control` : others;
-    for (const made of all(CONTROLS)) if (made.id !== "help") Object.assign(made, { disabled: !mine });
+    for (const made of all(CONTROLS)) if (!ALWAYS.includes(made.id)) Object.assign(made, { disabled: !mine });
     const requested = waiting.some((viewer) => viewer === this.connection.hello?.viewer);
     $("take").hidden = mine;
     $("take").disabled = requested;

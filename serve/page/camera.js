@@ -37,18 +37,33 @@ export const fieldOfView = (ahead, size) => (Math.atan(measure(size) / 2 / ahead
 
 /** @param {Pose} view @param {Size} size */ export function toRegisters(view, size) {
   const { look, right, up } = axes(view);
+  const sides = { right: scale(right, view.flipX ? -1 : 1), up: scale(up, view.flipY ? -1 : 1) };
+  return {
+    position: view.eye.map((value) => Math.round(value * 16)),
+    ...rounded(scale(look, focal(view.fov, size)), sides, size),
+  };
+}
+
+/** Registers whose frames show what those of a finer size show. Registers are coarse where pixels are many: without this
+ * the picture would jump when it is refined. @param {Pose} view @param {Size} size @param {Size} finer */
+export function alignedRegisters(view, size, finer) {
+  const fine = toRegisters(view, finer);
+  const factor = finer[0] / size[0];
+  if (factor === 1) return fine;
+  const sides = { right: scale(fine.right, factor), up: scale(fine.up, factor) };
+  return { position: fine.position, ...rounded(fine.look, sides, size) };
+}
+
+/** Directions of any length as the largest registers that the hardware takes. @param {Vector} ahead @param {{ right:
+ * Vector, up: Vector }} sides @param {Size} size */
+function rounded(ahead, { right, up }, size) {
   const halves = size.map((side) => Math.floor(side / 2));
-  const ahead = scale(look, focal(view.fov, size));
   const rounding = 1 + halves[0] + halves[1];
   const reaches = ahead.map((part, i) => Math.abs(part) + Math.abs(right[i]) * halves[0] + Math.abs(up[i]) * halves[1]);
-  const reach = Math.max(...reaches);
   const largest = Math.max(...[...ahead, ...right, ...up].map(Math.abs));
-  const factor = Math.min(REGISTER_LIMIT / largest, (DIRECTION_LIMIT - rounding) / reach);
-  /** @param {Vector} triple */
-  const whole = (triple, sign = 1) => triple.map((value) => Math.round(value * factor * sign) + 0);
-  const [rightward, upward] = [whole(right, view.flipX ? -1 : 1), whole(up, view.flipY ? -1 : 1)];
-  const position = view.eye.map((value) => Math.round(value * 16));
-  return { position, look: whole(ahead), right: rightward, up: upward };
+  const factor = Math.min(REGISTER_LIMIT / largest, (DIRECTION_LIMIT - rounding) / Math.max(...reaches));
+  /** @param {Vector} triple */ const whole = (triple) => triple.map((value) => Math.round(value * factor) + 0);
+  return { look: whole(ahead), right: whole(right), up: whole(up) };
 }
 
 /** The pose of registers that were made for frames of `size`. The target is the point of the central ray that is

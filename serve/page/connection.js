@@ -12,7 +12,7 @@ const RETRY = { first: 500, longest: 5000 }; // milliseconds
 /** @typedef {Refusal & { retry: number }} Away */
 /** @typedef {Progress & { type: string, bytes: number }} Report */
 
-/** What answers hold, each some of it. @typedef {{ request: number, upload: number, scene: string, hit: { point:
+/** What answers hold, each some of it. @typedef {{ request: number, upload: number, scene: { name: string }, hit: { point:
  * Vector } | null, registers: Record<string, number>, counters: Record<string, number> }} Answer */
 
 /** @typedef {{ resolve: (answer: Answer) => void, reject: (error: Error) => void, progress?: ((report: Report) =>

@@ -3,7 +3,7 @@
 /** The elements that are more than an HTMLElement. @typedef {"files" | "depth" | "budget" | "budget-words" | "sun-x"
  * | "sun-y" | "sun-z" | "sky" | "samples" | "frames" | "bounces" | "background"} Inputs */
 /** @typedef {{ picture: HTMLCanvasElement, "hardware-picture": HTMLCanvasElement, octants: SVGSVGElement, size:
- * HTMLSelectElement, keys: HTMLDialogElement, advanced: HTMLDetailsElement } & Record<Inputs, HTMLInputElement> &
+ * HTMLSelectElement, up: HTMLSelectElement, unit: HTMLSelectElement, fill: HTMLSelectElement, rule: HTMLSelectElement, keys: HTMLDialogElement, advanced: HTMLDetailsElement } & Record<Inputs, HTMLInputElement> &
  * Record<"take" | "bake", HTMLButtonElement> & Record<"token-form" | "save-view", HTMLFormElement> &
  * Record<"hardware-progress" | "bitstream-progress", HTMLProgressElement>} Elements */
 

@@ -1,7 +1,7 @@
 // Requests of frames: each asks for the newest view, at a size that suits the device. At most two wait for their frames,
 // one where frames are slow; later changes are sent together with the next one.
 
-import { toRegisters } from "./camera.js";
+import { alignedRegisters } from "./camera.js";
 import { Resolution } from "./resolution.js";
 /** @import { Pose, Registers, Size } from "./camera.js" @import { Device, Frame, View } from "./protocol.js" */
 
@@ -40,6 +40,12 @@ export class FrameRequests {
   /** The shape of the picture at rest. */
   get size() {
     return this.resolution.finest(this.stage, this.device).size;
+  }
+
+  /** The camera of a frame, which shows what the finest one shows. @param {Pose} view @param {Size} size */
+  registers(view, size) {
+    const finest = this.size.map((side) => 2 * side);
+    return alignedRegisters(view, size, finest[0] > size[0] ? finest : size);
   }
 
   /** Seconds that the frame takes for which the page waits, and since when; null for quick frames. */
@@ -90,7 +96,7 @@ export class FrameRequests {
 
   /** @param {Pose} view @param {Wanted} wanted */ send(view, { size, samples }) {
     const columns = size.map((side) => side * samples);
-    const number = this.renderer.changeView({ camera: toRegisters(view, columns), size: columns, ...this.#fields });
+    const number = this.renderer.changeView({ camera: this.registers(view, columns), size: columns, ...this.#fields });
     this.#samples.set(number, samples);
     this.#shown = { size, samples };
     this.#shape = this.size.join();

@@ -11,9 +11,9 @@ import { add, clamp, length, scale, subtract } from "./vectors.js";
 /** @typedef {{ view: Look, scene: { depth: number } }} LitState */
 /** @typedef {Page & { device(): Device, state(): LitState, set(fields: Partial<Look>): void }} LitPage */
 
-const SHADINGS = {
+/** @type {Record<string, string[]>} */ const SHADINGS = {
   faces: ["Faces", "Each face has its own brightness; tops are the brightest"],
-  report: ["Report", "Brightness by the angle to the camera or the lamp, as in the report on the original hardware"],
+  report: ["Report", "Faces that turn away are darker, as in the report on the original hardware"],
   flat: ["Flat", "Materials show their own colour"],
 };
 const FEATURES = { light: ["Shadows", "A lamp casts shadows"], mirrors: ["Mirrors", "Mirror materials reflect"] };
@@ -81,6 +81,7 @@ export class Light {
 
   /** @param {LitState} state */ show({ view, scene }) {
     for (const made of all("button", $("shading"))) pressed(made, made.dataset.shading === view.shading);
+    $("shading-says").textContent = `${SHADINGS[view.shading]?.[1] ?? ""}.`;
     for (const made of all("button", $("features"))) pressed(made, view.features.includes(made.dataset.feature ?? ""));
     const lit = view.features.includes("light");
     $("light").hidden = $("light-place").hidden = !lit;

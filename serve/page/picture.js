@@ -1,6 +1,6 @@
 // The picture on the canvas. A frame with four rays per pixel is averaged in linear light.
 
-import { save } from "./save.js";
+import { fileName, save } from "./save.js";
 /** @import { Size } from "./camera.js" */
 
 const STEPS = 4096; // of linear light
@@ -52,10 +52,14 @@ export class Picture {
   }
 
   /** @param {string} name */ save(name) {
-    this.canvas.toBlob((blob) => {
-      if (blob) save(blob, `${name.replace(/[^\w.-]+/g, "_")}.png`);
-    }, "image/png");
+    savePng(this.canvas, name);
   }
+}
+
+/** @param {HTMLCanvasElement} canvas @param {string} name */ export function savePng(canvas, name) {
+  canvas.toBlob((blob) => {
+    if (blob) save(blob, fileName(name, "png"));
+  }, "image/png");
 }
 
 /** The mean of each 2 x 2 pixels, sRGB, as RGBA. @param {ArrayLike<number>} pixels @param {number} step bytes per
@@ -75,5 +79,14 @@ export function average(pixels, step, width, columns, rows, result) {
       }
       result[to++] = 255;
     }
+  }
+}
+
+/** The mean of pictures of one size, sRGB, RGBA. @param {ArrayLike<number>[]} pictures @param {Uint8ClampedArray} result */
+export function mean(pictures, result) {
+  for (let at = 0; at < result.length; at++) {
+    let sum = 0;
+    for (const pixels of pictures) sum += linear[pixels[at]];
+    result[at] = at % 4 === 3 ? 255 : encoded[Math.round((sum * STEPS) / pictures.length)];
   }
 }

@@ -4,7 +4,8 @@
 
 export const PROTOCOL = 2;
 const HEADER = 56;
-/** @typedef {{ name: string, size: Size, width_step: number, position_limit: number, features: string[] }} Device */
+/** @typedef {{ name: string, size: Size, width_step: number, position_limit: number, features: string[],
+ * pixels?: number, smooth?: number }} Device */
 
 /** @typedef {{ protocol: number, viewer: number, device: Device, scenes: string[], suffixes: string[], limits: {
  * chunk: number, upload: number } }} Hello */

@@ -7,18 +7,20 @@
 const MOVING = 0.05; // seconds that a frame may take while the camera moves
 const STEP = 1; // seconds: a finer frame that takes longer than this comes after one of half its columns
 const LONGEST = 60; // seconds that a frame may take at all
-const SMOOTH = 0.5; // seconds that a frame with four rays per pixel may take
+const SMOOTH = 0.5; // seconds that a frame with four rays per pixel may take, where the device names no others
 const COARSEST = 8; // part of the columns and rows
-const PIXELS = 1 << 22; // of a frame
+const PIXELS = 1 << 22; // of a frame, where the device names no other number
 const RATIO = 2; // of the screen's pixels to those of the page, at most
 
 export class Resolution {
   /** @type {number | null} seconds per pixel */ cost = null;
+  #newest = 0; // seconds per pixel of the newest frame: the first frames of a scene are slow
   /** @type {Size | null} a size that was chosen in place of the stage's */ fixed = null;
 
   /** Learn from a frame; what the network takes counts too. @param {Size} size @param {number} seconds */
   measure([width, height], seconds) {
     const cost = seconds / (width * height);
+    this.#newest = cost;
     this.cost = this.cost === null ? cost : Math.sqrt(this.cost * cost);
   }
 
@@ -34,8 +36,8 @@ export class Resolution {
     const smooth =
       !this.fixed &&
       this.cost !== null &&
-      this.seconds(doubled) <= SMOOTH &&
-      doubled[0] * doubled[1] <= PIXELS &&
+      Math.min(this.cost, this.#newest) * doubled[0] * doubled[1] <= (device.smooth ?? SMOOTH) &&
+      doubled[0] * doubled[1] <= (device.pixels ?? PIXELS) &&
       doubled.every((side, i) => side <= device.size[i]) &&
       doubled[0] % device.width_step === 0;
     return { size, samples: smooth ? 2 : 1 };

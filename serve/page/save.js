@@ -1,5 +1,8 @@
 // Files that the browser saves.
 
+/** @param {string} name @param {string} extension */
+export const fileName = (name, extension) => `${name.replace(/[^\w.-]+/g, "_")}.${extension}`;
+
 /** @param {Blob} blob @param {string} name */ export function save(blob, name) {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(blob);

@@ -24,6 +24,8 @@ const ALSO = [".json", ".bin", ".mtl", ".png", ".jpg", ".jpeg"]; // what scene f
 /** @typedef {(stage: string, done: number, total: number) => void} OnProgress */
 
 export class Scenes {
+  /** @type {Map<string, File[]>} files of this viewer that were shown, by the scene's name */ #opened = new Map();
+
   /** @param {App} app */ constructor(app) {
     this.app = app;
     for (const bar of all("[data-scenes]")) makeToolbar(bar);
@@ -37,7 +39,9 @@ export class Scenes {
     $("examples").hidden = scenes.length === 0;
     for (const bar of all("[data-scenes]")) {
       bar.replaceChildren();
-      for (const name of scenes) makeButton(bar, name, () => this.#request(name)).dataset.scene = name;
+      for (const name of scenes) makeButton(bar, name, () => this.request(name)).dataset.scene = name;
+      for (const [name, files] of this.#opened)
+        if (!scenes.includes(name)) makeButton(bar, name, () => this.open(files)).dataset.scene = name;
     }
   }
 
@@ -47,15 +51,20 @@ export class Scenes {
     $("stage").classList.toggle("empty", scene.number === 0);
   }
 
-  /** @param {string} name */ #request(name) {
+  /** Show a scene of the server. @param {string} name */ request(name) {
     this.load(name, (report) =>
       this.app.connection.request("show", { scene: name }, ({ stage, done, total }) => report(stage, done, total)),
     );
   }
 
   /** @param {File[]} files */ open(files) {
-    if (files.length)
-      this.load(files[0].name, (report, signal) => uploadFiles(this.app.connection, files, report, signal));
+    if (!files.length) return;
+    this.load(files[0].name, async (report, signal) => {
+      const { name } = await uploadFiles(this.app.connection, files, report, signal);
+      this.#opened.set(name, files);
+      if (this.app.connection.hello) this.hello(this.app.connection.hello);
+      this.show(this.app.state());
+    });
   }
 
   /** Run what loads another scene. @param {string} name @param {(report: OnProgress, signal: AbortSignal) =>

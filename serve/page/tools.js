@@ -32,8 +32,3 @@ export function makeTools() {
   });
   return { KeyO: () => $("statistics").click(), KeyP: () => $("save").click(), KeyH: () => $("help").click() };
 }
-
-/** Tell scripts and screen readers whether a finer picture will follow. @param {boolean} busy */
-export function showBusy(busy) {
-  if ($("stage").getAttribute("aria-busy") !== String(busy)) $("stage").setAttribute("aria-busy", String(busy));
-}

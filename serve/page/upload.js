@@ -18,7 +18,7 @@ const WINDOW = 8; // chunks that the server has not acknowledged
   return message;
 }
 
-/** Resolves with the scene, rejects with the reason of the server, or when `signal` aborts. The caller then tells
+/** Resolves with what is known of the scene, rejects with the reason of the server, or when `signal` aborts. The caller then tells
  * the server. @param {Connection} connection @param {File[]} files @param {OnProgress} report @param {AbortSignal}
  * signal */
 export async function uploadFiles(connection, files, report, signal) {

@@ -8,6 +8,9 @@ export const add = (a, b, factor = 1) => a.map((value, axis) => value + b[axis] 
 
 /** @param {Vector} a @param {Vector} b */
 export const dot = (a, b) => a.reduce((sum, value, axis) => sum + value * b[axis], 0);
+
+/** @param {Vector} a @param {Vector} b */
+export const cross = ([ax, ay, az], [bx, by, bz]) => [ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx];
 /** @param {Vector} a */ export const length = (a) => Math.hypot(...a);
 /** @param {Vector} a @param {number} factor */ export const scale = (a, factor) => a.map((value) => value * factor);
 

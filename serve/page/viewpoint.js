@@ -1,7 +1,6 @@
 // Where the camera stands, and how it goes elsewhere: at once or in a glide. Requests of frames follow it.
 
 import { Glide } from "./glide.js";
-import { showBusy } from "./tools.js";
 /** @import { Pose } from "./camera.js" @import { Flight } from "./flight.js" */
 /** @import { FrameRequests } from "./frame_requests.js" @import { Gestures } from "./gestures.js" */
 
@@ -35,7 +34,7 @@ export class Viewpoint {
   }
 
   /** Called once per frame of the screen. Returns whether the view has changed. @param {{ gestures: Gestures,
-   * flight: Flight }} pilot */
+   * flight: Pick<Flight, "active" | "step"> }} pilot */
   step({ gestures, flight }) {
     gestures.step();
     flight.step();
@@ -47,7 +46,10 @@ export class Viewpoint {
     }
     const { changed } = this.frames;
     const rests = this.frames.step(this.pose, gestures.active || flight.active);
-    showBusy(!rests || gliding !== null);
+    // Scripts and screen readers learn whether a finer picture will follow.
+    const busy = String(!rests || gliding !== null);
+    const { stage } = this.frames;
+    if (stage.getAttribute("aria-busy") !== busy) stage.setAttribute("aria-busy", busy);
     return changed;
   }
 }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,9 @@ import numpy as np
 from fakes.browser import RESTS
 
 from voxrt.octree.camera import Camera, Lighting
+from voxrt.options.notations import BACKGROUNDS
 from voxrt.sim import render
+from voxrt.voxelize import EMPTY
 
 if TYPE_CHECKING:
     from fakes.browser import Browser
@@ -65,7 +68,10 @@ def frame_of(browser: Browser) -> tuple[dict, list[int], np.ndarray]:
     script = """
         const done = arguments[0];
         const { camera, width, height } = window.voxrt.newest;
-        const text = window.voxrt.colours().reduce((text, byte) => text + String.fromCharCode(byte), "");
+        const colours = window.voxrt.colours();
+        let text = "";
+        for (let at = 0; at < colours.length; at += 1 << 14)
+            text += String.fromCharCode(...colours.subarray(at, at + (1 << 14)));
         done({ camera, size: [width, height], pixels: btoa(text) });
     """
     got = browser.run_async(script)
@@ -74,10 +80,18 @@ def frame_of(browser: Browser) -> tuple[dict, list[int], np.ndarray]:
     return got["camera"], got["size"], colours
 
 
+def on_paper(rom: Rom) -> Rom:
+    """The memory with the page's background, unless it has one of its own."""
+    empty = rom.materials[0]
+    if empty.colour != EMPTY.colour:
+        return rom
+    return replace(rom, materials=(replace(empty, colour=BACKGROUNDS["light"]), *rom.materials[1:]))
+
+
 def shows_exactly(browser: Browser, rom: Rom, lighting: Lighting | None = None) -> bool:
     """The newest frame is that of the exact model, run natively."""
     camera, size, colours = frame_of(browser)
-    native = render(rom, registers(camera), tuple(size), engine="model", lighting=lighting or Lighting())
+    native = render(on_paper(rom), registers(camera), tuple(size), engine="model", lighting=lighting or Lighting())
     return np.array_equal(colours, native.colour)
 
 

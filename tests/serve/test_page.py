@@ -112,6 +112,47 @@ def test_page(tmp_path):
         assert browser.faults() == []
 
 
+def test_scenes_that_were_opened_stay_in_the_list(tmp_path):
+    files = write_rom(tmp_path, rom_of("second", worlds.ball(4), 4))
+    with shown_page(scene_of("first", worlds.boxes(4, 9, 3), 4)) as (browser, _):
+        assert browser.until(f"{RESTS} && document.querySelector('#scene').innerText === 'first'")
+        browser.give_files("#files", [str(files.mem), str(files.manifest)])
+        for name in ("second", "first", "second"):
+            assert browser.until(f"document.querySelector('#panel [data-scene={name}]')?.disabled === false")
+            browser.click(f"#panel [data-scene={name}]")
+            assert browser.until("document.querySelector('#notice').hidden")
+            assert browser.until(f"document.querySelector('#scene').innerText === '{name}'")
+            assert browser.until(f"document.querySelector('#panel [data-scene={name}]').ariaPressed === 'true'")
+        assert browser.faults() == []
+
+
+def test_a_link_shows_a_scene_and_a_view(tmp_path):
+    files = write_rom(tmp_path, rom_of("second", worlds.ball(4), 4))
+    with shown_page(scene_of("first", worlds.boxes(4, 9, 3), 4)) as (browser, server):
+        assert browser.until(f"{RESTS} && document.querySelector('#scene').innerText === 'first'")
+        browser.run("document.querySelector('#picture').focus()")
+        browser.keys(["\ue012"], 0.3)  # left arrow
+        assert browser.until(RESTS)
+        camera = server.session.renderer.view.camera
+        browser.click("#copy")
+        link = browser.run("return location.href")
+        browser.give_files("#files", [str(files.mem), str(files.manifest)])
+        assert browser.until("document.querySelector('#scene').innerText === 'second'")
+        assert browser.run("return document.querySelector('#copy').hidden")  # nobody else has its files
+        browser.open("about:blank")
+        browser.open(link)
+        assert browser.until("document.querySelector('#scene').innerText === 'first'")
+        browser.draws()
+        assert browser.until(RESTS)
+        again = server.session.renderer.view.camera
+        assert np.allclose(again.look, camera.look, atol=60)
+        assert np.allclose(again.position, camera.position, atol=2)
+        browser.open("about:blank")
+        browser.open(f"{server.url}#scene=castle")
+        assert browser.until("document.querySelector('#notice').innerText.includes('castle was not loaded')")
+        assert browser.faults() == []
+
+
 def test_light():
     with shown_page(scene_of("ball", worlds.ball(4), 4)) as (browser, server):
         assert browser.until(RESTS)

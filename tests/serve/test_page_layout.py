@@ -71,6 +71,23 @@ def test_all_fits(browser):
         assert found == tool
 
 
+def test_no_text_is_cut(browser):
+    """Not even while somebody else has control."""
+    script = """
+        const control = document.querySelector("#control");
+        const [before, hidden] = [control.textContent, document.querySelector("#take").hidden];
+        control.textContent = "viewer 12 has control";
+        document.querySelector("#take").hidden = false;
+        const texts = [control, ...document.querySelectorAll("header button, .chips button")];
+        const cut = texts.filter((one) => one.checkVisibility() && one.scrollWidth > one.clientWidth);
+        const outside = texts.filter((one) => one.getBoundingClientRect().right > innerWidth);
+        control.textContent = before;
+        document.querySelector("#take").hidden = hidden;
+        return [...cut, ...outside].map((one) => one.textContent);
+    """
+    assert browser.run(script) == []
+
+
 def test_figures_are_hidden_on_a_phone_at_first(browser):
     assert browser.run("return document.querySelector('#figures').hidden") == browser.touches
     browser.mouse([browser.middle("#statistics")])

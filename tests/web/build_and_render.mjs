@@ -8,13 +8,15 @@ globalThis.ProgressEvent ??= class extends Event {};
 
 const { Voxrt } = await importOf("voxrt/voxrt.js");
 const { readFiles } = await importOf("files.js");
+const { extension } = await importOf("folder.js");
+const { placed } = await importOf("placing.js");
 const module = await WebAssembly.compile(await fileOf("voxrt/voxrt.wasm"));
 
-await answer(async ({ files, depth, fill = "auto", bake, budget, frames = [] }) => {
+await answer(async ({ files, depth, fill = "auto", rule = "touch", bake, budget, frames = [] }) => {
   const voxrt = await Voxrt.load(module);
   const given = await Promise.all(files.map(async (path) => ({ name: basename(path), bytes: new Uint8Array(await readFile(path)) })));
   const read = await readFiles(given, voxrt);
-  const built = read.memory ?? voxrt.voxelize(read.scene, { depth, fill, bake, budget });
+  const built = read.memory ?? voxrt.voxelize(placed(read.scene, extension(read.file), { up: null, unit: null }), { depth, fill, rule, bake, budget });
   voxrt.setMemory(built.words, built.depth);
   const pictures = frames.map(({ camera, size, shading }) => {
     voxrt.shade({ materials: built.materials.map((material) => material.colour), mirrors: built.materials.flatMap(({ mirror }, id) => (mirror ? [id] : [])), ...shading });

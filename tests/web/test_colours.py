@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import struct
 import zlib
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 from assets import asset, over_assets
-from fakes.site import assert_same_memory, node, objects_of, page_builds, sha, warnings_of
+from fakes.site import ROOT, assert_same_memory, node, objects_of, page_builds, sha, warnings_of
 from oracles.gltf_writer import GltfWriter
 from oracles.meshes import box_mesh
 from PIL import Image
@@ -190,6 +191,38 @@ def test_png_files_are_decoded_as_natively(tmp_path: Path) -> None:
     for path, one in zip(paths, found, strict=True):
         native = decode_image(path.read_bytes(), path, "image", WarningLog())
         assert one == {"size": [native.shape[1], native.shape[0]], "sha": sha(native)}, path
+
+
+def test_objects_of_gltf_have_rules_of_their_own(tmp_path: Path) -> None:
+    glb = (ROOT / "examples" / "courtyard.glb").read_bytes()
+    length = int.from_bytes(glb[12:16], "little")
+    described = json.loads(glb[20 : 20 + length])
+    files = []
+    for rule in ("half", "round"):
+        for shown in (one for one in described["nodes"] if "mesh" in one):
+            shown["extras"] = {**shown.get("extras", {}), "voxrt_rule": rule}
+        text = json.dumps(described).encode()
+        text += b" " * (-len(text) % 4)
+        rest = glb[20 + length :]
+        head = glb[:8] + struct.pack("<III", 20 + len(text) + len(rest), len(text), 0x4E4F534A)
+        files.append(tmp_path / f"{rule}.glb")
+        files[-1].write_bytes(head + text + rest)
+    found, refused = page_builds(*([file] for file in files), depth=6)
+    native = voxrt.build(files[0], depth=6).rom
+    assert_same_memory(found, native)
+    assert found["words"] != sha(voxrt.build(ROOT / "examples" / "courtyard.glb", depth=6).octree.words)
+    assert "is no rule; name one of touch, centre, half" in refused["problem"]
+
+
+def test_groups_within_objects_of_obj_are_no_objects(tmp_path: Path) -> None:
+    """A closed object whose sides are groups is filled, as natively."""
+    corners = [f"v {x} {y} {z}" for x, y, z in ((0, 0, 0), (4, 0, 0), (0, 4, 0), (0, 0, 4))]
+    sides = [f"g side_{i}\nf {face}" for i, face in enumerate(("1 3 2", "1 2 4", "1 4 3", "2 3 4"))]
+    (tmp_path / "grouped.obj").write_text("\n".join([*corners, "o wedge", *sides]) + "\n")
+    (found,) = page_builds([tmp_path / "grouped.obj"], depth=5)
+    native = voxrt.build(tmp_path / "grouped.obj", depth=5)
+    assert_same_memory(found, native.rom)
+    assert found["objects"] == objects_of(native)
 
 
 def test_broken_images_are_refused_in_one_line(tmp_path: Path) -> None:

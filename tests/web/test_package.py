@@ -56,5 +56,14 @@ def test_the_readme_voxelizes_a_mesh_of_three(installed: Path) -> None:
     assert np.array_equal(words, native.octree.words)
 
 
+def test_what_the_package_exports_is_in_it(installed: Path) -> None:
+    package = installed / "node_modules" / "voxrt"
+    known = json.loads((package / "package.json").read_text())
+    paths = [path for one in known["exports"].values() for path in (one.values() if isinstance(one, dict) else [one])]
+    assert all((package / path).is_file() for path in paths)
+    assert (package / "voxrt-view.js").stat().st_size < 120_000
+    assert re.search(r"^import|\bimport\(", (package / "voxrt-view.js").read_text()) is None  # it is one file
+
+
 def test_the_version_is_that_of_voxrt() -> None:
     assert json.loads((ROOT / "web" / "package" / "package.json").read_text())["version"] == voxrt.__version__

@@ -9,7 +9,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 from assets import asset
-from fakes.static_page import EXAMPLES, REFUSES, drop, frame_of, notice, opened, registers, show, shows_exactly
+from fakes.static_page import (
+    EXAMPLES,
+    REFUSES,
+    drop,
+    frame_of,
+    notice,
+    on_paper,
+    opened,
+    registers,
+    show,
+    shows_exactly,
+)
 from PIL import Image
 
 import voxrt
@@ -49,7 +60,7 @@ def test_textures_are_shown_as_natively(browser: Browser, tmp_path: Path, image:
     show(browser, *files)
     camera, size, colours = frame_of(browser)
     rom = voxrt.build(files[0], depth=7).rom
-    native = render(rom, registers(camera), tuple(size), engine="model").colour
+    native = render(on_paper(rom), registers(camera), tuple(size), engine="model").colour
     assert len(np.unique(native.reshape(-1, 3), axis=0)) > 15
     assert np.abs(colours.astype(int) - native).mean() <= most
 

@@ -2,6 +2,7 @@
 
 /** @typedef {readonly number[]} Triple three numbers */
 /** @typedef {"surface" | "solid" | "auto"} Fill */
+/** @typedef {"touch" | "centre" | "half"} Rule which voxels of solids are filled */
 /** @typedef {"repeat" | "mirror" | "clamp"} Wrap */
 
 /** `colour`: sRGB, 0 … 255; `authored`: false for one that replaces a missing material. @typedef {{ name: string,
@@ -28,7 +29,8 @@
  * normals?: Normals }} Mesh */
 
 /** `mesh`: index into the scene's meshes; `transform`: rows of a 3 x 4 matrix to the scene frame: right-handed,
- * metres, y up. @typedef {{ name: string, mesh: number, transform: ArrayLike<number> }} SceneObject */
+ * metres, y up; `rule`: its own one. @typedef {{ name: string, mesh: number, transform: ArrayLike<number>, rule?: Rule |
+ * null }} SceneObject */
 
 /** @typedef {{ materials: Material[], meshes: Mesh[], objects: SceneObject[] }} Scene */
 /** @typedef {{ kind: string, message: string, count: number }} Warning */
@@ -39,7 +41,7 @@
 
 /** `depth`: 1 … 16; `colours`: the most for all textures and vertex colours; `bake`: light that is put into the
  * colours; `budget`: the most words that the memory may have; it gives up what is seen least. @typedef {{ depth?:
- * number, fill?: Fill, colours?: number, bake?: Daylight | null, budget?: number | null }} Options */
+ * number, fill?: Fill, rule?: Rule, colours?: number, bake?: Daylight | null, budget?: number | null }} Options */
 
 /** @typedef {Daylight & { voxels: number, colours: number, wordsBefore: number, words: number }} Baked */
 
@@ -53,6 +55,7 @@
  * Baked | null, fitted: Fitted | null }} Built */
 
 /** @type {readonly Fill[]} */ export const FILLS = ["surface", "solid", "auto"];
+/** @type {readonly Rule[]} */ export const RULES = ["touch", "centre", "half"];
 export const DEPTH_LIMIT = 16;
 /** @type {readonly Wrap[]} */ export const WRAPS = ["repeat", "mirror", "clamp"];
 /** @type {Daylight} */ export const DAYLIGHT = { sun: [1, 3, 2], sky: [0.4, 0.4, 0.4], samples: 64 };

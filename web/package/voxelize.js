@@ -2,7 +2,7 @@
 
 import { textBytes, VoxrtError } from "./instance.js";
 import { leftOut } from "./opacity.js";
-import { BAKED_COLOURS, COLOURS, DEPTH_LIMIT, FILLS, WRAPS } from "./scene_format.js";
+import { BAKED_COLOURS, COLOURS, DEPTH_LIMIT, FILLS, RULES, WRAPS } from "./scene_format.js";
 /** @import { Appearance, Baked, Built, Daylight, Fitted, Image, Options, Scene } from "./scene_format.js" */
 /** @import { Voxrt } from "./voxrt.js" */
 
@@ -10,14 +10,16 @@ const MIRROR = 1 << 24;
 const AUTHORED = 1 << 25;
 
 /** @param {Voxrt} voxrt @param {Scene} scene @param {Options} options @returns {Built} */
-export function voxelize(voxrt, scene, { depth = 7, fill = "auto", colours = COLOURS, bake = null, budget = null }) {
+export function voxelize(voxrt, scene, options) {
+  const { depth = 7, fill = "auto", rule = "touch", colours = COLOURS, bake = null, budget = null } = options;
   if (!Number.isInteger(depth) || depth < 1 || depth > DEPTH_LIMIT)
     throw new VoxrtError(`depth must be 1 … 16, not ${depth}`);
   if (!FILLS.includes(fill)) throw new VoxrtError(`fill must be ${FILLS.join(", ")}, not ${fill}`);
+  if (!RULES.includes(rule)) throw new VoxrtError(`rule must be ${RULES.join(", ")}, not ${rule}`);
   const { wasm } = voxrt;
   return voxrt.guard(() => {
     const transparent = describe(voxrt, scene, bake !== null);
-    voxrt.checked(wasm.vx_voxelize(depth, FILLS.indexOf(fill), colours));
+    voxrt.checked(wasm.vx_voxelize(depth, FILLS.indexOf(fill), RULES.indexOf(rule), colours));
     const baked = bake && bakeLight(voxrt, bake);
     const fitted = budget ? fit(voxrt, budget) : null;
     if (baked && fitted) baked.colours = fitted.colours;
@@ -67,9 +69,9 @@ function describe(voxrt, { materials, meshes, objects }, hasNormals) {
       voxrt.checked(wasm.vx_surface(list, numbers.length, ...at)),
     );
   }
-  for (const { name, mesh, transform } of objects)
+  for (const { name, mesh, transform, rule = null } of objects)
     voxrt.with([Float64Array, Uint8Array], [transform, textBytes(name)], (at, text) =>
-      voxrt.checked(wasm.vx_object(mesh, at, text)),
+      voxrt.checked(wasm.vx_object(mesh, at, text, rule ? RULES.indexOf(rule) : -1)),
     );
   return voxrt.checked(wasm.vx_scene_end());
 }

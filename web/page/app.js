@@ -1,29 +1,27 @@
 // The static page: dropped files and examples become a memory in one worker, and pictures of it in several.
 
 import { BandPicture, coloursOf } from "./band_picture.js";
+import { BuildNotice } from "./build_notice.js";
 import { Builder } from "./builder.js";
-import { fromRegisters, FIELD_OF_VIEW, lookAlong, pixelDirection, toRegisters } from "./camera.js";
+import { pixelDirection } from "./camera.js";
 import { $ } from "./elements.js";
 import { Figures } from "./figures.js";
+import { firstView, limitOf } from "./first_view.js";
 import { FrameRequests } from "./frame_requests.js";
 import { Inspector } from "./inspector.js";
 import { Light } from "./light.js";
 import { FIRST_LOOK, nextLook, shadingOf } from "./looks.js";
-import { boundsOf } from "./memory.js";
+import { boundsOf, worldOf } from "./memory.js";
 import { MemoryPanel } from "./memory_panel.js";
-import { focus, frame } from "./navigation.js";
+import { focus } from "./navigation.js";
 import { dismiss, notice } from "./notices.js";
 import { Painter } from "./painter.js";
-import { scale, add } from "./vectors.js";
+import { scale } from "./vectors.js";
 import { Viewpoint } from "./viewpoint.js";
 import { Views } from "./views.js";
-/** @import { Box, Pose, Size } from "./camera.js" @import { Look } from "./light.js" */
+/** @import { Pose, Size } from "./camera.js" @import { Look } from "./light.js" */
 /** @import { Memory, Shown } from "./memory.js" @import { Source } from "./sources.js" */
 /** @import { Move } from "./viewpoint.js" */
-
-const CORNER = [-0.62, -0.55, -1];
-const MADE_FOR = [640, 480]; // the cameras of manifests
-const SLOW = 250; // milliseconds until a build is announced
 
 /** What `make site` has put together. `boards`: the words that each holds; `designs`: the boards that have
  * bitstreams. @typedef {{ boards: Record<string, number>, designs: string[], examples: Record<string, { title:
@@ -52,7 +50,7 @@ export class App {
       const samples = this.frames.receive(bands);
       this.picture.showBands(bands, samples);
       this.figures.add(bands, samples);
-      const shownCamera = () => toRegisters(/** @type {Pose} */ (this.view()), this.#shownSize());
+      const shownCamera = () => this.frames.registers(/** @type {Pose} */ (this.view()), this.#shownSize());
       const colours = () => coloursOf(bands);
       const readable = { newest: bands, colours, view: () => this.view(), shownCamera };
       Object.assign(window, { voxrt: readable }); // scripts may read the picture
@@ -74,7 +72,7 @@ export class App {
   #shownSize = () => [$("picture").width, $("picture").height];
   side = () => 2 ** this.#shown().depth;
   bounds = () => this.#shown().bounds;
-  limit = () => 8 * this.side() + 512;
+  limit = () => limitOf(this.#shown());
   #shading = () => shadingOf(this.#shown(), this.#look);
 
   /** How hits are coloured, without light and mirrors. */
@@ -112,36 +110,26 @@ export class App {
   async build(first = false) {
     const { source } = this;
     if (!source) return;
-    const cancel = () => {
-      this.builder.cancel();
-      dismiss();
-    };
-    let stage = "";
-    const show = () => notice("progress", stage || "Building", source.files[0].name, { cancel });
-    const timer = setTimeout(show, SLOW);
+    const announced = new BuildNotice(source.files[0].name, () => this.builder.cancel());
     try {
-      const built = await this.builder.build(source.files, this.panel.options(), (now) => {
-        stage = now;
-        if (!$("notice").hidden) show();
-      });
+      const built = await this.builder.build(source.files, this.panel.options(), (stage) => announced.enter(stage));
       if (source !== this.source) return;
-      clearTimeout(timer);
+      announced.end();
       await this.#show(built, first);
       dismiss();
     } catch (error) {
-      clearTimeout(timer);
       const { message } = /** @type {Error} */ (error);
       if (message === "cancelled") return;
-      const isRead = stage !== "" && stage !== "Reading";
+      const isRead = announced.stage !== null && announced.stage.text !== "Reading";
       notice("error", isRead ? "The model cannot be voxelized" : "The model cannot be shown", message);
+    } finally {
+      announced.end();
     }
   }
 
   /** @param {Memory} built @param {boolean} first */ async #show(built, first) {
     const old = this.#memory;
-    const side = 2 ** built.depth;
-    /** @type {Box} */ const world = [Array(3).fill(0), Array(3).fill(side)];
-    /** @type {Shown} */ const memory = { ...built, voxels: [], bounds: world };
+    /** @type {Shown} */ const memory = { ...built, voxels: [], bounds: worldOf(built.depth) };
     this.#look = nextLook(this.#look, memory, old, first);
     this.#memory = memory;
     this.inspector.clear();
@@ -160,19 +148,12 @@ export class App {
     $("stage").dataset.scene = `${built.name} ${built.depth}`;
   }
 
-  /** The view of the memory's author, or one from a corner. */
-  firstView() {
-    const { view, bounds } = this.#shown();
-    if (view?.look.some(Boolean)) return fromRegisters(view, MADE_FOR, scale(add(...bounds), 0.5), this.size());
-    const plain = { fov: FIELD_OF_VIEW.usual, distance: 1, flipX: false, flipY: false };
-    const origin = { eye: [0, 0, 0], yaw: 0, pitch: 0, ...plain };
-    return frame(lookAlong(origin, CORNER), bounds, this.size(), this.limit());
-  }
+  firstView = () => firstView(this.#shown(), this.size());
 
   /** Follow the ray of a pixel. @param {Size} pixel column and row */
   async #follow([column, row]) {
     const size = this.#shownSize();
-    const registers = toRegisters(/** @type {Pose} */ (this.view()), size);
+    const registers = this.frames.registers(/** @type {Pose} */ (this.view()), size);
     const followed = await this.painter.follow(registers.position, pixelDirection(registers, size, column, row));
     return { ...followed, registers, size, pixel: [column, row] };
   }

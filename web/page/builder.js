@@ -2,7 +2,8 @@
 
 import { Hand } from "./hand.js";
 /** @import { DroppedFile } from "./folder.js" @import { Memory } from "./memory.js" */
-/** @import { Options } from "./voxrt/voxrt.js" @import { WorkerCalls } from "./worker.js" */
+/** @import { Stage } from "./build_notice.js" @import { BuildCalls, BuildOptions } from "./build_worker.js" */
+/** @import { Placing } from "./placing.js" */
 
 export class Builder {
   #source = 0;
@@ -15,13 +16,13 @@ export class Builder {
   }
 
   async #start() {
-    /** @type {Hand<WorkerCalls>} */ const hand = new Hand("./worker.js");
+    /** @type {Hand<BuildCalls>} */ const hand = new Hand("./build_worker.js");
     await hand.call("start", { module: this.module });
     return hand;
   }
 
-  /** Rejects with the reason, or "cancelled". @param {DroppedFile[]} files @param {Required<Omit<Options,
-   * "colours">>} options @param {(stage: string) => void} onStage */
+  /** Rejects with the reason, or "cancelled". @param {DroppedFile[]} files @param {BuildOptions & Placing} options @param
+   * {(stage: Stage) => void} onStage */
   async build(files, options, onStage) {
     if (this.#busy) this.cancel();
     if (files !== this.#files) this.#source++;

@@ -1,15 +1,14 @@
-// What the page hands out: the memory as .mem, its manifest, a link to the scene and the view.
+// The manifest of the memory that is shown.
 
 import { crc32 } from "./crc32.js";
 import { memBytes } from "./memory.js";
 import { DIALECT, hex } from "./voxrt/words.js";
-/** @import { Pose } from "./camera.js" @import { Shown } from "./memory.js" */
-/** @import { Daylight } from "./voxrt/voxrt.js" */
+/** @import { Shown } from "./memory.js" */
 
 /** The manifest as voxrt build writes it (export/manifest.py), or that of the memory. @param {Shown} memory */
 export function manifestOf(memory) {
   const { name, file, words, depth, materials, grid, objects, warnings } = memory;
-  const { seconds, fill, lighting, baked, voxels } = memory;
+  const { seconds, fill, rule, up, unit, lighting, baked, voxels } = memory;
   const crc = hex(crc32(memBytes(words)));
   if (memory.manifest) return { ...memory.manifest, crc32: crc };
   const { wordsBefore: _before, words: _words, ...light } = baked ?? {};
@@ -27,7 +26,7 @@ export function manifestOf(memory) {
     objects: objects.map((object) => ({ source: "mesh", moved: [0, 0, 0], grown: [0, 0, 0], ...object })),
     warnings,
     seconds: { build: seconds ?? 0 },
-    source: { file, settings: { fill: fill ?? null } },
+    source: { file, settings: { fill: fill ?? null, rule: rule ?? null, up: up ?? null, unit: unit ?? null } },
     view: null,
     lighting: lighting ?? null,
     animation: null,
@@ -38,40 +37,3 @@ export function manifestOf(memory) {
 /** From voxels to the scene. @param {NonNullable<Shown["grid"]>} grid */
 const matrixOf = ({ origin, voxelSize }) =>
   [...origin, 1].map((place, row) => [0, 1, 2].map((at) => (at === row ? voxelSize : 0)).concat(place));
-
-const NUMBERS = /^-?\d+(\.\d+)?$/;
-
-/** The part of an address that carries a scene and its view. @param {{ example: string | null, depth: number, bake:
- * Daylight | null, words: number | null, view: Pose }} link */
-export function linkOf({ example, depth, bake, words, view }) {
-  const { eye, yaw, pitch, fov, distance } = view;
-  const camera = [...eye, yaw, pitch, fov, distance].map((value) => Number(value.toFixed(3))).join(",");
-  return `#${new URLSearchParams({
-    ...(example ? { scene: example } : {}),
-    depth: String(depth),
-    ...(bake ? { bake: [...bake.sun, bake.sky[0], bake.samples].join(",") } : {}),
-    ...(words ? { words: String(words) } : {}),
-    camera,
-  })}`;
-}
-
-/** What such a part of an address says; null for what it does not. @param {string} hash */
-export function readLink(hash) {
-  const fields = new URLSearchParams(hash.slice(1));
-  /** @param {string} name @param {number} count */ const read = (name, count) => {
-    const parts = (fields.get(name) ?? "").split(",");
-    return parts.length === count && parts.every((part) => NUMBERS.test(part)) ? parts.map(Number) : null;
-  };
-  const words = Number(fields.get("words"));
-  const depth = Number(fields.get("depth"));
-  const [x, y, z, level = -1, samples = 0] = read("bake", 5) ?? [];
-  const isBaked = level >= 0 && level <= 16 && Number.isInteger(samples) && samples >= 1 && samples <= 4096;
-  const [eyeX, eyeY, eyeZ, yaw, pitch, fov, distance] = read("camera", 7) ?? [];
-  return {
-    example: fields.get("scene"),
-    depth: Number.isInteger(depth) && depth >= 1 && depth <= 12 ? depth : null,
-    bake: isBaked ? { sun: [x, y, z], sky: [level, level, level], samples } : null,
-    words: Number.isInteger(words) && words >= 1 && words < 2 ** 32 ? words : null,
-    camera: distance !== undefined ? { eye: [eyeX, eyeY, eyeZ], yaw, pitch, fov, distance } : null,
-  };
-}

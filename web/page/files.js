@@ -1,6 +1,6 @@
 // Dropped files as a scene: three.js parses them. Nothing is fetched but the files themselves.
 
-import { FileError, Folder, stem } from "./folder.js";
+import { extension, FileError, Folder, stem } from "./folder.js";
 /** @import { DroppedFile } from "./folder.js" @import { Memory } from "./memory.js" */
 /** @import { Scene, Voxrt, Warning } from "./voxrt/voxrt.js" */
 
@@ -24,7 +24,6 @@ const READERS = new Map([
   ["usd", usd],
 ]);
 const FORMATS = [...READERS.keys(), "vox", "mem"];
-/** @param {string} name */ const extension = (name) => name.slice(name.lastIndexOf(".") + 1).toLowerCase();
 
 /** The first scene that no other one names: layers of USD refer to each other. @param {DroppedFile[]} files */
 function sceneAmong(files) {
@@ -57,13 +56,15 @@ export async function readFiles(files, voxrt) {
       const { readVox } = await import("./vox.js");
       return { ...known, memory: readVox(main.name, main.bytes, voxrt) };
     }
+    if (!main.bytes.length) throw new FileError("is empty; export it again");
     const read = await (READERS.get(kind) ?? usd)();
     const scene = await read(main, new Folder(files), voxrt);
     if (!scene.objects.length) throw new FileError("has no triangles to voxelize; check that the scene shows a mesh");
     return { ...known, scene };
   } catch (error) {
     const text = error instanceof Error ? error.message : String(error);
-    const problem = text.split("\n")[0];
+    const isOurs = !(error instanceof RangeError || error instanceof TypeError || error instanceof SyntaxError);
+    const problem = (isOurs ? "" : "is damaged or cut off; export it again: ") + text.split("\n")[0];
     throw new FileError(problem.startsWith(main.name) ? problem : `${main.name}: ${problem}`);
   }
 }

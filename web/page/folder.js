@@ -8,6 +8,8 @@ export class FileError extends Error {
 
 /** @param {string} name */ export const stem = (name) => name.slice(0, name.lastIndexOf("."));
 
+/** @param {string} name */ export const extension = (name) => name.slice(name.lastIndexOf(".") + 1).toLowerCase();
+
 /** @param {string} name */ function decoded(name) {
   try {
     return decodeURIComponent(name);

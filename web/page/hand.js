@@ -14,7 +14,8 @@ export class Hand {
   #last = 0;
 
   /** @param {string} script */ constructor(script) {
-    this.worker = new Worker(new URL(script, import.meta.url), { type: "module" });
+    const type = script.startsWith("blob:") ? "classic" : "module"; // pages from a disk start no modules of a blob
+    this.worker = new Worker(new URL(script, import.meta.url), { type });
     this.worker.onmessage = ({ data }) => this.#answer(data);
     this.worker.onerror = (event) => {
       event.preventDefault();

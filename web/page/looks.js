@@ -7,8 +7,7 @@ import { BACKGROUND, FACES } from "./voxrt/voxrt.js";
 
 const LAMP = [1.4, 1.9, 1.1]; // sides of the world
 const BOUNCES = 3;
-const bright = matchMedia("(prefers-color-scheme: light)").matches;
-const AROUND = bright ? [228, 234, 244] : BACKGROUND;
+const AROUND = [236, 240, 244]; // as the light background of previews
 const START = { shading: "faces", features: [], light: [0, 0, 0] };
 /** @type {Look} */
 export const FIRST_LOOK = { ...START, ambient: PLAIN.ambient, bounces: BOUNCES, background: AROUND };

@@ -1,30 +1,40 @@
 // The start of the page: its buttons, its keys, and what happens once per frame of the screen.
 
 import { App } from "./app.js";
-import { linkOf, manifestOf, readLink } from "./downloads.js";
+import { manifestOf } from "./downloads.js";
 import { acceptFiles } from "./drop.js";
 import { $, isPressed, makeButton, makeToolbar, pressed } from "./elements.js";
 import { HardwarePanel } from "./hardware_panel.js";
 import { memBytes } from "./memory.js";
 import { frame } from "./navigation.js";
-import { notice } from "./notices.js";
+import { dismiss, notice } from "./notices.js";
 import { makePilot } from "./pilot.js";
 import { save } from "./save.js";
-import { sourceOfExample, sourceOfFiles } from "./sources.js";
+import { sourceOfAddress, sourceOfExample, sourceOfFiles } from "./sources.js";
 import { makeTools } from "./tools.js";
 /** @import { Site } from "./app.js" */
 
 const CLICK = 5; // pixels that a click may move
 
+/** The address, and the choices for one file, no longer belong to what is shown. @param {App} app */
+function forgetSource(app) {
+  history.replaceState(null, "", location.pathname);
+  app.panel.choices.options = { ...app.panel.choices.options, up: null, unit: null };
+}
+
 /** @param {App} app @param {Site} site */ function openScenes(app, site) {
   acceptFiles(async (files) => {
     if (!files.length) return;
-    history.replaceState(null, "", location.pathname + location.search);
+    forgetSource(app);
     await app.open(await sourceOfFiles(files));
   });
   $("open").onclick = () => $("files").click();
   for (const [name, { title }] of Object.entries(site.examples)) {
-    const open = async () => app.open(await sourceOfExample(name, site));
+    const open = async () => {
+      const source = await sourceOfExample(name, site);
+      forgetSource(app);
+      await app.open(source);
+    };
     const fail = (/** @type {Error} */ { message }) => notice("error", "The example cannot be loaded", message);
     const chip = makeButton($("examples"), title, () => open().catch(fail));
     chip.dataset.example = name;
@@ -63,23 +73,11 @@ function inspect(app) {
     const text = `${JSON.stringify(manifestOf(memory), null, 2)}\n`;
     save(new Blob([text], { type: "application/json" }), `${memory.name}.json`);
   };
-  $("save").onclick = () => {
-    const memory = app.memory();
-    if (memory) app.picture.save(memory.name);
+  const fail = (/** @type {Error} */ { message }) => {
+    if (message !== "cancelled") notice("error", "This cannot be saved", message); // another memory came
   };
-  $("copy").onclick = async () => {
-    const [memory, view] = [app.memory(), app.view()];
-    if (!memory || !view) return;
-    const { bake, budget } = app.panel.options();
-    const example = app.source?.example ?? null;
-    history.replaceState(null, "", linkOf({ example, depth: memory.depth, bake, words: budget, view }));
-    const copied = navigator.clipboard?.writeText(location.href);
-    const done = await copied?.then(() => true).catch(() => false);
-    $("copy").textContent = done ? "Copied" : "In the address bar";
-    setTimeout(() => {
-      $("copy").textContent = "Copy link";
-    }, 1500);
-  };
+  $("save").onclick = () => import("./stills.js").then(({ savePicture }) => savePicture(app)).catch(fail);
+  $("turntable").onclick = () => import("./turntable.js").then(({ record }) => record(app)).catch(fail);
 }
 
 /** Keys, gestures and buttons move the camera. @param {App} app */
@@ -108,6 +106,20 @@ async function compile() {
   );
 }
 
+/** Show what the address names. @param {App} app @param {Site} site */ async function openAddress(app, site) {
+  addEventListener("hashchange", () => location.reload()); // another link in the same tab
+  try {
+    const onStage = (/** @type {string} */ text) => notice("progress", "Loading", text);
+    const { source, camera, ...options } = await sourceOfAddress(location, site, onStage);
+    dismiss();
+    app.panel.set(options);
+    await app.open(source);
+    if (camera) app.viewpoint.change((now) => ({ ...now, ...camera }));
+  } catch (error) {
+    notice("error", "This link cannot be shown", /** @type {Error} */ (error).message);
+  }
+}
+
 async function start() {
   /** @type {[WebAssembly.Module, Site]} */
   const [module, site] = await Promise.all([compile(), fetch("site.json").then((answer) => answer.json())]);
@@ -117,10 +129,7 @@ async function start() {
   inspect(app);
   offerDownloads(app);
   const pilot = steer(app);
-  const { example, camera, ...options } = readLink(location.hash);
-  app.panel.set(options);
-  await app.open(await sourceOfExample(example && example in site.examples ? example : "courtyard", site));
-  if (camera) app.viewpoint.change((now) => ({ ...now, ...camera }));
+  await openAddress(app, site);
   const animate = () => {
     requestAnimationFrame(animate);
     app.viewpoint.step(pilot);

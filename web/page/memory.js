@@ -13,10 +13,11 @@ export const PLAIN = { position: [0, 0, 0], ambient: 90, on: false, flat: false,
 /** @type {Lighting} the lighting of a memory with baked light */ export const FLAT = { ...PLAIN, flat: true };
 
 /** A memory that was built or read. `fixed`: it was read, and cannot be built otherwise. `view`: the camera of its
- * author; `manifest`: that it came with. @typedef {{ name: string, file: string, words: Uint32Array, depth: number,
+ * author; `manifest`: that it came with; `lossless`: what fits a budget that gives up much. @typedef {{ name: string, file: string, words: Uint32Array, depth: number,
  * materials: Required<Material>[], grid: { origin: readonly number[], voxelSize: number } | null, objects:
  * object[], warnings: Warning[], lighting?: Lighting | null, view?: Registers | null, manifest?: Manifest | null,
- * baked?: Baked | null, fitted?: Fitted | null, fill?: string, seconds?: number, fixed?: boolean }} Memory */
+ * baked?: Baked | null, fitted?: Fitted | null, lossless?: { depth: number, words: number } | null, fill?: string, rule?: string, up?: string |
+ * null, unit?: number | null, seconds?: number, fixed?: boolean }} Memory */
 
 /** @typedef {Memory & { voxels: number[], bounds: Box }} Shown with voxels by material */
 
@@ -30,7 +31,8 @@ export function memBytes(words) {
   return bytes;
 }
 
-/** The box of cubes: x, y, z of the lowest corner and the side, each; null for none. @param {Int32Array} cubes */
+/** The box of cubes: x, y, z of the lowest corner and the side, each; null for none. @param {Int32Array} cubes
+ * @returns {Box | null} */
 export function boundsOf(cubes) {
   if (!cubes.length) return null;
   const [low, high] = [Array(3).fill(Infinity), Array(3).fill(-Infinity)];
@@ -41,3 +43,6 @@ export function boundsOf(cubes) {
     }
   return [low, high];
 }
+
+/** The whole world. @param {number} depth @returns {Box} */
+export const worldOf = (depth) => [Array(3).fill(0), Array(3).fill(2 ** depth)];

@@ -2,9 +2,13 @@
 
 import { BoardPanel } from "./board_panel.js";
 import { Budget } from "./budget.js";
+import { Choices } from "./choices.js";
 import { DaylightControl } from "./daylight.js";
 import { $, all, element, pressed, showFacts } from "./elements.js";
+import { Sharing } from "./sharing.js";
+import { WarningList } from "./warning_list.js";
 /** @import { App, Site } from "./app.js" @import { Shown } from "./memory.js" */
+/** @import { Daylight } from "./voxrt/voxrt.js" */
 
 const SOON = 150; // milliseconds after the last change of the slider
 const KIB = 256; // words
@@ -25,6 +29,9 @@ export class MemoryPanel {
     this.bitstreams = new BoardPanel(app, module);
     this.daylight = new DaylightControl(() => app.build());
     this.budget = new Budget(() => app.build());
+    this.choices = new Choices(() => app.build());
+    this.sharing = new Sharing(app);
+    this.warnings = new WarningList(app);
     /** @type {ReturnType<typeof setTimeout> | undefined} */ let soon;
     $("depth").oninput = () => {
       this.#showDepth();
@@ -35,13 +42,14 @@ export class MemoryPanel {
 
   /** How memories are built. */
   options() {
-    const fill = /** @type {const} */ ("auto");
-    return { depth: $("depth").valueAsNumber, fill, bake: this.daylight.options, budget: this.budget.words };
+    const [depth, bake, budget] = [$("depth").valueAsNumber, this.daylight.options, this.budget.words];
+    return { depth, bake, budget, ...this.choices.options };
   }
 
-  /** @param {{ depth?: number | null, bake?: ReturnType<MemoryPanel["options"]>["bake"], words?: number | null }}
-   * options */
-  set({ depth = null, bake = null, words = null }) {
+  /** @param {{ depth?: number | null, bake?: Daylight | null, words?: number | null } &
+   * Partial<Choices["options"]>} options */
+  set({ depth = null, bake = null, words = null, up = null, unit = null, fill = "auto", rule = "touch" }) {
+    this.choices.options = { up, unit, fill, rule };
     if (depth !== null) $("depth").valueAsNumber = depth;
     if (bake) this.daylight.set(bake);
     this.budget.words = words;
@@ -53,7 +61,7 @@ export class MemoryPanel {
   }
 
   /** @param {Shown} memory */ show(memory) {
-    const { name, words, depth, voxels, warnings, fixed, seconds, fitted } = memory;
+    const { name, words, depth, voxels, fixed, seconds, fitted } = memory;
     const solid = voxels.reduce((sum, voxelCount, id) => (id ? sum + voxelCount : 0), 0);
     const time = seconds ? ` · ${seconds.toFixed(2)} s` : "";
     $("scene").textContent = name;
@@ -63,6 +71,7 @@ export class MemoryPanel {
       $(id).disabled = Boolean(fixed);
     if (fixed) $("depth").valueAsNumber = depth;
     this.#showDepth();
+    this.choices.show(memory);
     this.budget.fits(fitted?.wordsShared ?? words.length);
     const changed = fitted ? (100 * fitted.changed) / (fitted.surface || 1) : 0;
     showFacts($("facts"), {
@@ -73,8 +82,8 @@ export class MemoryPanel {
     });
     const boards = Object.entries(this.site.boards);
     $("boards").replaceChildren(...boards.map(([board, limit]) => this.#board(board, limit, memory)));
-    const texts = warnings.map(({ message, count: times }) => (times > 1 ? `${message} (${times})` : message));
-    $("warnings").replaceChildren(...texts.map((text) => element("li", {}, text)));
+    this.warnings.show(memory);
+    this.sharing.show(memory);
     for (const chip of all("button", $("examples"))) pressed(chip, chip.dataset.example === this.app.source?.example);
   }
 

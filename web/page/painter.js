@@ -7,22 +7,25 @@ import { Events } from "./events.js";
 import { Hand } from "./hand.js";
 /** @import { Band, BandFrame } from "./band_picture.js" @import { Registers, Size } from "./camera.js" */
 /** @import { Memory } from "./memory.js" @import { Vector } from "./vectors.js" */
-/** @import { Look } from "./voxrt/voxrt.js" @import { WorkerCalls } from "./worker.js" */
+/** @import { Look } from "./voxrt/voxrt.js" @import { PaintCalls } from "./paint_worker.js" */
 
 const TILE = 16; // rows of pixels
-const BANDS = 3; // per worker: they cost differently
+const BANDS = 3; // per worker, or more: they cost differently
+const BAND = 1 << 18; // pixels that a band may have: the camera waits for as many when it starts to move
 const AHEAD = 2; // bands per worker: it renders one while the next one waits there
 const MOST = 8; // workers
 const MEMORY = 1 << 30; // bytes of words in all workers
-const LIMITS = { size: [4096, 4096], width_step: 1, position_limit: 2 ** 27 };
+const LIMITS = { size: [4096, 4096], pixels: 1 << 24, smooth: 2, width_step: 1, position_limit: 2 ** 27 };
 const DEVICE = { name: "this browser", features: ["light", "mirrors"], ...LIMITS };
 
-/** A frame that is rendered. `since`: when it was requested; `left`: bands that are not rendered. @typedef {{
- * request: number, camera: Registers, size: Size, since: number, scene: number, left: number, began: number | null,
- * bands: Band[] }} Job */
+/** A frame that is rendered. `since`: when it was requested; `left`: bands that are not rendered; `aside`: who waits
+ * for a frame that is not shown. @typedef {{ request: number, camera: Registers, size: Size, since: number, scene:
+ * number, left: number, began: number | null, bands: Band[], aside: Aside | null }} Job */
+
+/** @typedef {{ resolve: (frame: BandFrame) => void, reject: (error: Error) => void }} Aside */
 
 /** @typedef {{ job: Job, first: number, end: number }} Part of a frame: rows of tiles */
-/** @typedef {{ hand: Hand<WorkerCalls>, bands: number }} Artist a worker, and the bands that it has */
+/** @typedef {{ hand: Hand<PaintCalls>, bands: number }} Artist a worker, and the bands that it has */
 
 /** @extends {Events<{ frame: BandFrame, trouble: string }>} */ export class Painter extends Events {
   hello = { viewer: 1, device: DEVICE };
@@ -35,9 +38,11 @@ const DEVICE = { name: "this browser", features: ["light", "mirrors"], ...LIMITS
   #sequence = 0;
   #scene = 0;
 
-  /** @param {WebAssembly.Module} module */ constructor(module) {
+  /** @param {WebAssembly.Module} module @param {string} script that of paint_worker.js */
+  constructor(module, script = "./paint_worker.js") {
     super();
     this.module = module;
+    this.script = script;
   }
 
   /** Show another memory. Resolves when every worker has it. @param {Memory} memory @param {Look} shading */
@@ -46,12 +51,13 @@ const DEVICE = { name: "this browser", features: ["light", "mirrors"], ...LIMITS
     const wanted = Math.max(1, Math.min(navigator.hardwareConcurrency || 2, MOST, fitting));
     this.#scene++;
     this.sent.clear();
+    for (const { job } of this.#queue) job.aside?.reject(new Error("cancelled"));
     this.#queue = [];
     for (const { hand } of this.#artists.splice(wanted)) hand.stop();
     /** @type {Artist[]} */ const starting = [];
     while (this.#artists.length < wanted) {
       /** @type {Artist} */
-      const artist = { hand: new Hand("./worker.js"), bands: AHEAD }; // no more until it has started
+      const artist = { hand: new Hand(this.script), bands: AHEAD }; // no more until it has started
       this.#artists.push(artist);
       starting.push(artist);
     }
@@ -75,6 +81,12 @@ const DEVICE = { name: "this browser", features: ["light", "mirrors"], ...LIMITS
     return this.#artists[0].hand.call("follow", { origin, direction });
   }
 
+  /** End the workers. */
+  stop() {
+    this.#scene++;
+    for (const { hand } of this.#artists.splice(0)) hand.stop();
+  }
+
   census() {
     return this.#artists[0].hand.call("census", undefined);
   }
@@ -82,16 +94,38 @@ const DEVICE = { name: "this browser", features: ["light", "mirrors"], ...LIMITS
   /** Request a frame; returns its number. @param {{ camera: Registers, size: Size }} view */
   changeView({ camera, size }) {
     const request = ++this.#request;
-    const since = performance.now();
-    this.sent.set(request, since);
+    this.#drop(2 * size[0] * size[1]);
+    this.sent.set(request, performance.now());
+    this.#begin(request, camera, size, null);
+    return request;
+  }
+
+  /** Leave frames of more pixels unfinished: the camera has moved since they were requested. @param {number} pixels */
+  #drop(pixels) {
+    this.#queue = this.#queue.filter(({ job }) => {
+      const isStale = !job.aside && job.size[0] * job.size[1] > pixels;
+      if (isStale) this.sent.delete(job.request);
+      return !isStale;
+    });
+  }
+
+  /** Render a frame that is not shown. Rejects when another memory comes first. @param {{ camera: Registers, size: Size
+   * }} view @returns {Promise<BandFrame>} */
+  picture({ camera, size }) {
+    return new Promise((resolve, reject) => this.#begin(++this.#request, camera, size, { resolve, reject }));
+  }
+
+  /** @param {number} request @param {Registers} camera @param {Size} size @param {Aside | null} aside */
+  #begin(request, camera, size, aside) {
     const tiles = Math.ceil(size[1] / TILE);
-    const step = Math.max(1, Math.ceil(tiles / (BANDS * this.#artists.length)));
+    const most = Math.ceil(BAND / (TILE * size[0]));
+    const step = Math.max(1, Math.min(most, Math.ceil(tiles / (BANDS * this.#artists.length))));
     const left = Math.ceil(tiles / step);
-    /** @type {Job} */ const job = { request, camera, size, since, scene: this.#scene, left, began: null, bands: [] };
+    const known = { request, camera, size, since: performance.now(), scene: this.#scene, aside };
+    /** @type {Job} */ const job = { ...known, left, began: null, bands: [] };
     for (let first = 0; first < tiles; first += step)
       this.#queue.push({ job, first, end: Math.min(first + step, tiles) });
     for (const artist of this.#artists) this.#next(artist);
-    return request;
   }
 
   /** @param {Artist} artist */ #next(artist) {
@@ -116,23 +150,30 @@ const DEVICE = { name: "this browser", features: ["light", "mirrors"], ...LIMITS
       this.#next(artist);
       if (--job.left > 0) return;
       if (job.scene === this.#scene) this.#finish(job, job.began);
-      else this.#release(job.bands);
+      else {
+        this.#release(job.bands);
+        job.aside?.reject(new Error("cancelled"));
+      }
     } catch (error) {
       artist.bands--;
+      job.aside?.reject(/** @type {Error} */ (error));
       if (job.scene !== this.#scene) return;
       this.sent.delete(job.request);
       this.#queue = this.#queue.filter((waiting) => waiting.job !== job);
-      this.emit("trouble", /** @type {Error} */ (error).message);
+      if (!job.aside) this.emit("trouble", /** @type {Error} */ (error).message);
     }
   }
 
   /** @param {Job} job @param {number} began */
-  #finish({ request, since, size: [width, height], bands, camera }, began) {
+  #finish({ request, since, size: [width, height], bands, camera, aside }, began) {
     this.sent.delete(request);
-    const ids = { viewer: this.hello.viewer, request, requested: since, sequence: ++this.#sequence };
+    const sequence = aside ? this.#sequence : ++this.#sequence;
+    const ids = { viewer: this.hello.viewer, request, requested: since, sequence };
     const seconds = (performance.now() - began) / 1000;
     const figures = { seconds, rays: width * height, words: null, cycles: null };
-    this.emit("frame", { ...ids, ...figures, width, height, bands, camera });
+    const frame = { ...ids, ...figures, width, height, bands, camera };
+    if (aside) return aside.resolve(frame);
+    this.emit("frame", frame);
     const lengths = new Set(bands.map(({ pixels }) => pixels.byteLength));
     for (const length of this.#buffers.keys()) if (!lengths.has(length)) this.#buffers.delete(length);
     this.#release(this.#shown.filter(({ pixels }) => lengths.has(pixels.byteLength)));

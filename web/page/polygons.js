@@ -2,14 +2,12 @@
 // for convex ones. A concave quadrilateral becomes a fan from its reflex corner, or from the one opposite to it; a concave
 // polygon of more corners is cut by its ears, in its plane.
 
-import { add, dot, subtract } from "./vectors.js";
+import { add, cross, dot, subtract } from "./vectors.js";
 /** @import { Vector } from "./vectors.js" */
 
 /** @typedef {number[]} Triangle three indices of corners */
 /** @typedef {number[]} Point of a plane, two numbers */
 
-/** @param {Vector} a @param {Vector} b */
-const cross = ([ax, ay, az], [bx, by, bz]) => [ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx];
 const STRAIGHT = 1e-9; // a corner that turns back by less, of the square of the polygon's area, is straight
 
 /** The text with these polygons replaced; all other lines stay. @param {string} text */

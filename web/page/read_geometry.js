@@ -5,7 +5,8 @@ import { stem } from "./folder.js";
 import { decodeImage } from "./images.js";
 import { PLYLoader } from "./three/addons/loaders/PLYLoader.js";
 import { STLLoader } from "./three/addons/loaders/STLLoader.js";
-import { Matrix4, Mesh } from "./three/three.core.js";
+import { Mesh } from "./three/three.core.js";
+import { hintUpAxis } from "./up_axis.js";
 import { sceneOf } from "./voxrt/scene.js";
 import { Warnings } from "./voxrt/warnings.js";
 /** @import { BufferGeometry } from "three" @import { PLYLoader as Loader } from "three/addons/loaders/PLYLoader.js" */
@@ -27,9 +28,7 @@ function bare(geometry, main, voxrt, rules) {
 
 /** @type {Reader} */ export async function readStl(main, _folder, voxrt) {
   const rules = { appearanceOf: () => null, normalsOf: () => null }; // its normals are those of the faces
-  const geometry = new STLLoader().parse(main.bytes.buffer);
-  geometry.applyMatrix4(new Matrix4(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1)); // z is up there, and y here
-  return bare(geometry, main, voxrt, rules);
+  return bare(new STLLoader().parse(main.bytes.buffer), main, voxrt, rules);
 }
 
 /** Where only the last line of a header ends with "\r\n", PLYLoader would start with the data a byte early. @param
@@ -49,6 +48,7 @@ function withoutReturn(bytes) {
   const { rules, warnings } = await plyLook(main.bytes, geometry, folder, voxrt);
   const scene = bare(geometry, main, voxrt, rules);
   scene.warnings.push(...warnings);
+  hintUpAxis(scene);
   return scene;
 }
 

@@ -7,6 +7,7 @@ import { MeshoptDecoder } from "./three/addons/libs/meshopt_decoder.module.js";
 import { GLTFLoader } from "./three/addons/loaders/GLTFLoader.js";
 import { LoadingManager, Texture } from "./three/three.core.js";
 import { sceneOf } from "./voxrt/scene.js";
+import { RULES } from "./voxrt/voxrt.js";
 /** @import { Material, Object3D } from "three" @import { Reader } from "./files.js" */
 /** @import { DroppedFile, Folder } from "./folder.js" @import { GltfParser } from "./gltf_looks.js" */
 
@@ -35,6 +36,7 @@ import { sceneOf } from "./voxrt/scene.js";
       const name = nameOf(group);
       return (counts.get(name) ?? 0) > 1 ? `${name} (nodes[${place(group, "nodes")}])` : name;
     },
+    ruleOf: (group) => ruleOf(json.nodes?.[place(group, "nodes") ?? -1]?.extras?.voxrt_rule),
     materialOf: (material) => {
       const index = place(material, "materials");
       if (index === undefined) return null;
@@ -50,6 +52,13 @@ import { sceneOf } from "./voxrt/scene.js";
     if (/^KHR_(physics|implicit|materials_variants)/.test(name))
       scene.warnings.push({ kind: "extension", message: `${name} is not used here; voxrt build uses it`, count: 1 });
   return scene;
+}
+
+/** @param {unknown} rule */ function ruleOf(rule) {
+  const known = RULES.find((one) => one === rule) ?? null;
+  if (rule !== undefined && !known)
+    throw new FileError(`${JSON.stringify(rule)} is no rule; name one of ${RULES.join(", ")}`);
+  return known;
 }
 
 /** @param {DroppedFile} main @param {Folder} folder @param {GltfLooks} looks @returns {Promise<{ scene: Object3D,

@@ -5,8 +5,10 @@ import { decodeImage } from "./images.js";
 import { withoutConcave } from "./polygons.js";
 import { MTLLoader } from "./three/addons/loaders/MTLLoader.js";
 import { OBJLoader } from "./three/addons/loaders/OBJLoader.js";
+import { hintUpAxis } from "./up_axis.js";
 import { leftOut, OPAQUE_FROM } from "./voxrt/opacity.js";
 import { colours, sceneOf } from "./voxrt/scene.js";
+import { Warnings } from "./voxrt/warnings.js";
 /** @import { MaterialInfo } from "three/addons/loaders/MTLLoader.js" @import { Reader } from "./files.js" */
 /** @import { Folder } from "./folder.js" @import { Attribute, Rules, Setter } from "./voxrt/scene.js" */
 /** @import { Appearance, Voxrt, Warning } from "./voxrt/voxrt.js" */
@@ -26,12 +28,19 @@ function textOf(bytes) {
   }
 }
 
+/** Without groups where the file has objects: OBJLoader takes both for objects. @param {string} text */
+const objectsOf = (text) => (/^\s*o\s/m.test(text) ? text.replace(/^\s*g\b.*$/gm, "") : text);
+
 /** @type {Reader} */ export async function readObj(main, folder, voxrt) {
-  const text = textOf(main.bytes);
+  const text = objectsOf(textOf(main.bytes));
+  const warnings = new Warnings();
   /** @type {Map<string, MaterialInfo>} */ const library = new Map();
   for (const [, name] of text.matchAll(/^\s*mtllib\s+(.+?)\s*$/gm)) {
     const file = folder.find(name);
-    if (!file) continue;
+    if (!file) {
+      warnings.warn("missing-library", `material library '${name}' was not found`);
+      continue;
+    }
     const { materialsInfo } = new MTLLoader().parse(textOf(file.bytes), "");
     for (const [key, info] of Object.entries(materialsInfo)) if (!library.has(key)) library.set(key, info);
   }
@@ -47,7 +56,8 @@ function textOf(bytes) {
     ...(/^\s*vn\s/m.test(text) ? {} : { normalsOf: () => null }), // OBJLoader makes some of its own
     ...looks.rules,
   });
-  scene.warnings.push(...looks.warnings);
+  scene.warnings.push(...warnings.list(), ...looks.warnings);
+  hintUpAxis(scene);
   return scene;
 }
 

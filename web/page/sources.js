@@ -1,8 +1,12 @@
-// What the page builds memories of: files that were dropped or chosen, and examples.
+// What the page builds memories of: files that were dropped or chosen, examples, and what a link names.
 
+import { readLink } from "./links.js";
 /** @import { Site } from "./app.js" @import { DroppedFile } from "./folder.js" */
 
-/** @typedef {{ files: DroppedFile[], example: string | null }} Source */
+/** `example`: its name; `urls`: where the files are, in order. @typedef {{ files: DroppedFile[], example: string |
+ * null, urls?: string[] }} Source */
+
+const MOST = 256 * 2 ** 20; // bytes that are fetched for a link
 
 /** @param {File[]} list */ export async function sourceOfFiles(list) {
   const files = list.map(async (file) => ({ name: file.name, bytes: new Uint8Array(await file.arrayBuffer()) }));
@@ -16,4 +20,54 @@
     return { name, bytes: new Uint8Array(await answer.arrayBuffer()) };
   });
   return { files: await Promise.all(files), example };
+}
+
+/** The source and the options of an address; the courtyard where it names nothing. Throws an error for a link that
+ * cannot be honoured. @param {Location} address @param {Site} site @param {(text: string) => void} onStage */
+export async function sourceOfAddress({ hash, search }, site, onStage) {
+  const { scene, memory, ...options } = readLink(hash);
+  const urls = new URLSearchParams(search).getAll("model");
+  if ([scene, memory, urls[0]].filter(Boolean).length > 1) throw new Error("it names several scenes");
+  if (urls.length) return { source: await sourceOfUrls(urls, onStage), ...options };
+  if (memory) {
+    const { unpack } = await import("./packed.js");
+    return { source: { files: await unpack(memory), example: null }, ...options };
+  }
+  if (!scene && hash.length > 1)
+    throw new Error("it names no scene: it was copied from a model that never left its owner's computer");
+  const example = scene ?? "courtyard";
+  if (!Object.hasOwn(site.examples, example)) throw new Error(`there is no example ${JSON.stringify(example)} here`);
+  return { source: await sourceOfExample(example, site), ...options };
+}
+
+/** @param {string[]} urls @param {(text: string) => void} onStage */ async function sourceOfUrls(urls, onStage) {
+  /** @type {DroppedFile[]} */ const files = [];
+  let left = MOST;
+  for (const url of urls) {
+    onStage(url);
+    const bytes = await fetched(url, left);
+    left -= bytes.length;
+    files.push({ name: decodeURIComponent(new URL(url, location.href).pathname.replace(/^.*\//, "")), bytes });
+  }
+  return { files, example: null, urls };
+}
+
+/** @param {string} url @param {number} most bytes */ async function fetched(url, most) {
+  const answer = await fetch(url, { credentials: "omit" }).catch(() => {
+    throw new Error(`${url}: nothing came; its server must answer, and allow other pages to read it (CORS)`);
+  });
+  if (!answer.ok || !answer.body) throw new Error(`${url}: the server answers ${answer.status}`);
+  /** @type {Uint8Array<ArrayBuffer>[]} */ const parts = [];
+  let length = 0;
+  for (const reader = answer.body.getReader(); ; ) {
+    const { value } = await reader.read();
+    if (!value) break;
+    length += value.length;
+    if (length > most) {
+      reader.cancel();
+      throw new Error(`${url}: has more than ${MOST / 2 ** 20} MiB; load it down, and drop it on this page`);
+    }
+    parts.push(value);
+  }
+  return new Uint8Array(await new Blob(parts).arrayBuffer());
 }

@@ -52,6 +52,7 @@ struct Object {
     size_t mesh;
     std::array<double, 12> transform;
     std::string name;
+    int rule; // 0 touch, 1 centre, 2 half, -1 that of the build
 };
 
 struct Scene {

@@ -1,0 +1,54 @@
+"""The static page and the manual on a web host, below a path: no link begins at the host's root."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+import pytest
+from fakes.site import ROOT, site
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from fakes.browser import Browser
+
+ABSOLUTE = re.compile(
+    r"""(?:\b(?:href|src|action|poster)=|\bfrom |\bimport\(|\bfetch\(|\burl\()\s*["'`]?/(?!/)[^\s"'`)]*"""
+)
+
+
+def absolute_links(folder: Path) -> list[str]:
+    kinds = {".html", ".css", ".js"}
+    files = [path for path in sorted(folder.rglob("*")) if path.suffix in kinds]
+    assert files
+    texts = ((path, path.read_text(encoding="utf-8")) for path in files)
+    return [f"{path.name}: {found[0]}" for path, text in texts for found in ABSOLUTE.finditer(text)]
+
+
+def test_what_counts_as_an_absolute_link(tmp_path: Path) -> None:
+    (tmp_path / "page.html").write_text('<a href="/top"><img src="a/b.png"><a href="//host/"><a href="https://host/">')
+    (tmp_path / "script.js").write_text('import x from "/x.js"; import y from "./y.js"; fetch("/z"); fetch(`/w`)')
+    assert len(absolute_links(tmp_path)) == 4
+
+
+@pytest.mark.parametrize("name", ["site", "docs"])
+def test_no_link_is_absolute(name: str) -> None:
+    folder = ROOT / "build" / name
+    if not folder.exists():
+        pytest.skip(f"build/{name} is not here: make {name}")
+    assert absolute_links(folder) == []
+
+
+def test_the_page_works_below_a_path(browser: Browser, paths: list[str]) -> None:
+    """Workers, modules, examples, the circuit and the element are all found there."""
+    site()
+    browser.open("about:blank")
+    browser.open(browser.address + "#scene=house&depth=5")
+    assert browser.until("document.querySelector('#stage').dataset.scene === 'house 5'")
+    browser.click("#run-hardware")
+    assert browser.until("!document.querySelector('#hardware-result').hidden", 60)
+    browser.run("fetch('voxrt-view.js').then((answer) => (window.element = answer.ok))")
+    assert browser.until("window.element")
+    assert all(path.startswith("/voxrt/try/") for path in paths if path != "/favicon.ico")
+    assert not any(path.endswith("undefined") for path in paths)
