@@ -15,7 +15,8 @@ std::vector<Vertex> in_lattice(const std::vector<Point>& points, const Point& lo
     std::vector<Vertex> vertices;
     vertices.reserve(points.size());
     auto whole = [scale](double v, double from) {
-        return int32_t(std::clamp(std::nearbyint((v - from) * scale), 0.0, double(kCoordinateLimit)));
+        const double at = std::nearbyint((v - from) * scale);
+        return at > 0 ? int32_t(std::min(at, double(kCoordinateLimit))) : 0; // what is no number is refused later
     };
     for (const Point& p : points)
         vertices.push_back({whole(p.x, low.x), whole(p.y, low.y), whole(p.z, low.z)});
