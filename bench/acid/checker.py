@@ -1,34 +1,25 @@
 """Which voxels belong to a mesh, by each rule: exact, in integers and fractions, by brute force.
 
-It shares no code with voxrt and imports the standard library alone. Points are triples of whole numbers, in units of
-1/4096 voxel: `UNIT` is a voxel. Voxel v covers v * UNIT … (v + 1) * UNIT on each axis, 0 <= v < side. A triangle is
-three points, counter-clockwise seen from outside. A set of voxels is a set of triples.
-
-How it works: a triangle is cut by the planes between voxels, one axis after the other, so each piece lies in one
-voxel. A piece that is not within a side of its voxel meets the interior. A voxel whose interior no piece meets is
-inside or outside as a whole: a vertical line through it counts how often it enters and leaves (the winding number).
-Volumes are sums over the pieces of what lies below each.
+It shares no code with voxrt. Points are triples in units of 1/4096 voxel. A triangle is cut by the planes between
+voxels, so that each piece lies in one voxel. A piece that lies in no side of its voxel meets the interior. A voxel
+whose interior no piece meets is inside or outside as a whole: a vertical line through it counts how often it enters
+and leaves, which gives the winding number. Volumes are sums of what lies below each piece.
 """
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterable, Iterator, Sequence  # noqa: TC003 - of types below
 from fractions import Fraction
 from functools import cached_property
-from itertools import product
-from typing import TYPE_CHECKING
+from itertools import pairwise, product
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
-
-    Number = int | Fraction
-    Point = tuple[Number, Number, Number]
-    Triangle = tuple[Point, Point, Point]
-    Voxel = tuple[int, int, int]
-
+Number = int | Fraction
+Point = tuple[Number, Number, Number]
+Triangle = tuple[Point, Point, Point]
+Voxel = tuple[int, int, int]
 UNIT = 4096
-TRIES = range(1, 1000)
-"""Numbers of lines: the first one that meets no edge is taken."""
+TRIES = range(1, 1000)  # lines: the first one that meets no edge is taken
 
 
 def minus(a: Point, b: Point) -> Point:
@@ -49,25 +40,23 @@ def normal_of(triangle: Triangle) -> Point:
 
 
 def volume6(triangles: Iterable[Triangle]) -> Number:
-    """Six times the volume that triangles enclose; negative where they face inwards."""
+    """Sum six times the volume that triangles enclose; negative where they face inwards."""
     return sum(dot(a, cross(b, c)) for a, b, c in triangles)
 
 
+def fan(polygon: Sequence[Point]) -> list[Triangle]:
+    return [(polygon[0], b, c) for b, c in pairwise(polygon[1:])]
+
+
 def ratio(a: Number, b: Number) -> Number:
-    """The quotient; as an integer where it is one, since these are faster."""
-    return a // b if a % b == 0 else Fraction(a, b)
+    return a // b if a % b == 0 else Fraction(a, b)  # integers are faster
 
 
-def mean(points: Sequence[Point], weights: Sequence[int]) -> Point:
-    """A point within a convex polygon."""
-    used = weights[: len(points)]
-    x, y, z = (sum(w * p[i] for w, p in zip(used, points, strict=True)) for i in range(3))
-    return Fraction(x, sum(used)), Fraction(y, sum(used)), Fraction(z, sum(used))
-
-
-def clip(polygon: Sequence[Point], height: Callable[[Point], Number]) -> list[Point]:
-    """The part of a convex polygon where `height`, an affine function, is not negative."""
+def clip(polygon: Sequence[Point], height: Callable[[Point], Number]) -> Sequence[Point]:
+    """Keep the part of a convex polygon where `height`, an affine function, is not negative."""
     heights = [height(p) for p in polygon]
+    if min(heights, default=0) >= 0:
+        return polygon
     kept: list[Point] = []
     for i, (p, h) in enumerate(zip(polygon, heights, strict=True)):
         q, k = polygon[i - 1], heights[i - 1]
@@ -79,12 +68,7 @@ def clip(polygon: Sequence[Point], height: Callable[[Point], Number]) -> list[Po
 
 
 def between(polygon: Sequence[Point], axis: int, low: Number, high: Number) -> Sequence[Point]:
-    """The part of a convex polygon in low … high on an axis."""
-    if min(p[axis] for p in polygon) < low:
-        polygon = clip(polygon, lambda p: p[axis] - low)
-    if polygon and max(p[axis] for p in polygon) > high:
-        polygon = clip(polygon, lambda p: high - p[axis])
-    return polygon
+    return clip(clip(polygon, lambda p: p[axis] - low), lambda p: high - p[axis])
 
 
 def pieces(polygon: Sequence[Point], side: int, axis: int = 0) -> Iterator[tuple[Voxel, Sequence[Point]]]:
@@ -99,10 +83,7 @@ def pieces(polygon: Sequence[Point], side: int, axis: int = 0) -> Iterator[tuple
 
 
 def crossings(triangles: Iterable[Triangle], origin: Point, along: Point) -> list[tuple[Fraction, int]] | None:
-    """Where a line crosses triangles: (t, 1 where it leaves, -1 where it enters) at origin + t * along.
-
-    None where the line meets an edge: then another line is needed.
-    """
+    """Find where a line crosses triangles: t, and 1 where it leaves, -1 where it enters. None: it meets an edge."""
     found = []
     for triangle in triangles:
         a, b, c = (minus(p, origin) for p in triangle)
@@ -116,18 +97,16 @@ def crossings(triangles: Iterable[Triangle], origin: Point, along: Point) -> lis
 
 
 def winding(triangles: Sequence[Triangle], point: Point) -> int:
-    """The winding number of a closed surface about a point that is not on it."""
+    """Count how often a closed surface winds about a point that is not on it."""
     lines = (crossings(triangles, point, (7919 + 13 * k, 104729 + 31 * k, 1299709 + 57 * k * k)) for k in TRIES)
     return sum(sign for t, sign in next(line for line in lines if line is not None) if t > 0)
 
 
 def is_on(triangle: Triangle, point: Point) -> bool:
-    """Whether a point lies on a closed triangle that has an area."""
     normal = normal_of(triangle)
-    if dot(normal, minus(point, triangle[0])) != 0:
-        return False
-    ahead = (*triangle[1:], triangle[0])
-    return all(dot(normal, cross(minus(b, a), minus(point, a))) >= 0 for a, b in zip(triangle, ahead, strict=True))
+    return dot(normal, minus(point, triangle[0])) == 0 and all(
+        dot(normal, cross(minus(b, a), minus(point, a))) >= 0 for a, b in edges(triangle)
+    )
 
 
 def edges(triangle: Triangle) -> list[tuple[Point, Point]]:
@@ -135,102 +114,69 @@ def edges(triangle: Triangle) -> list[tuple[Point, Point]]:
     return [(a, b), (b, c), (c, a)]
 
 
-def balance(triangles: Iterable[Triangle]) -> dict[frozenset[Point], list[int]]:
-    """How often each edge is walked one way less the other way, and by how many triangles."""
-    found: dict[frozenset[Point], list[int]] = defaultdict(lambda: [0, 0])
-    for triangle in triangles:
-        for a, b in edges(triangle):
-            found[frozenset((a, b))][0] += 1 if a < b else -1
-            found[frozenset((a, b))][1] += 1
-    return found
+def is_closed(triangles: Sequence[Triangle]) -> bool:
+    """Say whether each edge is walked as often one way as the other."""
+    walked = Counter(edge for triangle in triangles for edge in edges(triangle))
+    if all(walked[a, b] == walked[b, a] for a, b in walked):
+        return True
+    if all((walked[a, b] + walked[b, a]) % 2 == 0 for a, b in walked):
+        raise ValueError("some faces of a closed surface are turned: the checker takes consistent faces alone")
+    return False
 
 
-def is_closed(triangles: Iterable[Triangle]) -> bool:
-    return not any(excess for excess, _ in balance(triangles).values())
-
-
-def grouped(triangles: Sequence[Triangle], keys_of: Callable[[Triangle], Iterable[object]]) -> list[list[Triangle]]:
-    """Triangles that share keys, directly or by way of others; each group begins with its first triangle."""
-    at = defaultdict(list)
-    for index, triangle in enumerate(triangles):
-        for key in keys_of(triangle):
-            at[key].append(index)
-    left, found = set(range(len(triangles))), []
+def connected(triangles: Sequence[Triangle]) -> list[list[Triangle]]:
+    """Part triangles into pieces that share no corner."""
+    left, found = list(triangles), []
     while left:
-        todo, own = [min(left)], []
-        left.discard(todo[0])
-        while todo:
-            own.append(todo.pop())
-            near = {i for key in keys_of(triangles[own[-1]]) for i in at[key]} & left
-            left -= near
-            todo.extend(sorted(near))
-        found.append([triangles[i] for i in own])
+        own, corners = [], set(left[0])
+        while near := [t for t in left if not corners.isdisjoint(t)]:
+            own += near
+            corners.update(p for t in near for p in t)
+            left = [t for t in left if t not in near]
+        found.append(own)
     return found
-
-
-def aligned(piece: list[Triangle]) -> list[Triangle]:
-    """Turn the faces of a connected piece so that each edge is walked as often one way as the other."""
-    if is_closed(piece):
-        return piece
-    if any(count > 2 for _, count in balance(piece).values()):
-        raise ValueError("more than two faces at an edge, and some are turned: the checker does not take this")
-    done: list[Triangle] = []
-    for group in grouped(piece, lambda t: [frozenset(edge) for edge in edges(t)]):
-        walked: set[tuple[Point, Point]] = set()
-        for face in group:
-            turned = walked.intersection(edges(face))
-            done.append(face[::-1] if turned else face)  # type: ignore[arg-type]
-            walked.update(edges(done[-1]))
-    return done
 
 
 def oriented(triangles: Sequence[Triangle]) -> list[list[Triangle]]:
-    """Connected pieces: equal faces once, each consistent, outwards where it closes; but within another as it was."""
-    once = {frozenset(t): t for t in reversed(triangles) if len(set(t)) == 3}
-    whole = [aligned(piece) for piece in grouped(list(reversed(once.values())), lambda t: t)]
+    """Turn closed pieces outwards; one that lies in others keeps its side of the least of them."""
     done: list[list[Triangle]] = []
     flips: list[bool] = []
-    for piece in sorted(whole, key=lambda piece: -abs(volume6(piece))):
-        points = {p for t in piece for p in t}
-        around, free = [], points
+    for piece in sorted(connected(triangles), key=lambda piece: -abs(volume6(piece))):
+        numbers, around = 0, None
         for index, other in enumerate(done):
-            off = {p for p in points if not any(is_on(t, p) for t in other)}
+            off = {p for t in piece for p in t if not any(is_on(face, p) for face in other)}
             if is_closed(other) and off and all(winding(other, p) for p in off):
-                around.append(index)
-                free = free & off
-        held = sum(winding(done[index], min(free)) for index in around) if free else 0
-        flip = is_closed(piece) and (flips[around[-1]] if held else volume6(piece) < 0)
+                numbers, around = numbers + winding(other, min(off)), index
+        flip = is_closed(piece) and (flips[around] if numbers and around is not None else volume6(piece) < 0)
         flips.append(flip)
         done.append([t[::-1] for t in piece] if flip else piece)  # type: ignore[misc]
     return done
 
 
 def meets_interior(voxel: Voxel, piece: Sequence[Point]) -> bool:
-    """Whether a part of a surface in a closed voxel lies in none of the voxel's sides."""
-    return all(
-        min(p[i] for p in piece) < (voxel[i] + 1) * UNIT and max(p[i] for p in piece) > voxel[i] * UNIT
-        for i in range(3)
-    )
+    """Say whether a part of a surface in a closed voxel lies in none of the voxel's sides."""
+    ends = ((min(p[i] for p in piece), max(p[i] for p in piece), voxel[i] * UNIT) for i in range(3))
+    return all(low < side + UNIT and high > side for low, high, side in ends)
 
 
 class Mesh:
-    """Triangles among `side` voxels per axis. Pieces that close have an inside, sheets have none."""
+    """Triangles among `side` voxels per axis. Pieces that close have an inside; with `sheets`, none do."""
 
-    def __init__(self, triangles: Sequence[Triangle], side: int) -> None:
+    def __init__(self, triangles: Sequence[Triangle], side: int, *, sheets: bool = False) -> None:
         self.side = side
-        found = oriented(triangles)
+        kept = [t for t in triangles if any(normal_of(t))]
+        found = [[t] for t in kept] if sheets else oriented(kept)
         self.triangles = [t for piece in found for t in piece]
         self.closing = [t for piece in found if is_closed(piece) for t in piece]
 
     @cached_property
     def _met(self) -> tuple[set[Voxel], set[Voxel], set[Voxel]]:
-        """Voxels that the surface meets: in their interior; at all; and those behind faces between voxels."""
+        """Return voxels that the surface meets: in their interior; at all; and those behind faces between voxels."""
         interior, contact, behind = set(), set(), set()
         for triangle in self.triangles:
             for voxel, piece in pieces(triangle, self.side):
                 contact.add(voxel)
-                if meets_interior(voxel, piece):
-                    interior.add(voxel)
+                interior |= {voxel} if meets_interior(voxel, piece) else set()
             normal = normal_of(triangle)
             for axis in range(3):
                 plane = triangle[0][axis]
@@ -243,17 +189,17 @@ class Mesh:
 
     @cached_property
     def _columns(self) -> dict[tuple[int, int], list[Triangle]]:
-        """The closing triangles above and below each column of voxels."""
+        """Return the closing triangles above and below each column of voxels."""
         at = defaultdict(list)
         for triangle in self.closing:
-            x, y = ((min(p[i] for p in triangle) // UNIT, max(p[i] for p in triangle) // UNIT) for i in (0, 1))
-            for column in product(range(x[0], x[1] + 1), range(y[0], y[1] + 1)):
+            ends = ((min(p[i] for p in triangle), max(p[i] for p in triangle)) for i in (0, 1))
+            for column in product(*(range(low // UNIT, high // UNIT + 1) for low, high in ends)):
                 at[column].append(triangle)
         return at
 
     @cached_property
     def _inside(self) -> set[Voxel]:
-        """Voxels wholly inside: the surface does not meet their interior."""
+        """Return voxels wholly inside: the surface does not meet their interior."""
         found = set()
         for x, y in product(range(self.side), repeat=2):
             points = ((x * UNIT + 1 + 577 * k % (UNIT - 1), y * UNIT + 1 + 1409 * k % (UNIT - 1), 0) for k in TRIES)
@@ -266,26 +212,30 @@ class Mesh:
         return found
 
     def touch(self) -> set[Voxel]:
-        """The closed solid meets the open interior; faces between voxels belong to the voxel behind them."""
+        """Return voxels whose open interior the closed solid meets, and those behind faces between voxels."""
         return self._met[0] | self._met[2] | self._inside
 
     def surface(self, *, contact: bool) -> set[Voxel]:
-        """The surface meets the voxel's open interior; with `contact`, the closed voxel."""
+        """Return voxels whose open interior the surface meets; with `contact`, the closed voxel."""
         return self._met[1] if contact else self._met[0]
 
-    def surface_within(self, margin: Fraction) -> set[Voxel]:
-        """The surface meets the closed middle of the voxel: a cube that ends `margin`, in voxels, before its sides."""
+    def surface_within(self, margin: Fraction, *, across: bool = False) -> set[Voxel]:
+        """Return voxels that the surface meets at a margin from their sides; `across`: but for those it faces most."""
         found = set()
         for triangle in self.triangles:
+            facing = [abs(v) for v in normal_of(triangle)]
+            alike = [axis for axis in range(3) if facing[axis] == max(facing)]
+            axes = {0, 1, 2} - set(alike if across and len(alike) == 1 else ())
             for voxel, piece in pieces(triangle, self.side):
-                for axis in range(3):
+                part = piece if meets_interior(voxel, piece) or not across else ()
+                for axis in axes if part else ():
                     low, high = (voxel[axis] + margin) * UNIT, (voxel[axis] + 1 - margin) * UNIT
-                    piece = between(piece, axis, low, high)  # noqa: PLW2901
-                found |= {voxel} if piece else set()
+                    part = between(part, axis, low, high)
+                found |= {voxel} if part else set()
         return found
 
     def centre(self, *, contact: bool) -> set[Voxel]:
-        """The voxel's centre lies inside; with `contact`, on the surface counts too."""
+        """Return voxels whose centre lies inside; with `contact`, on the surface counts too."""
         found = set(self._inside)
         for voxel in self._met[0]:
             middle = tuple(v * UNIT + UNIT // 2 for v in voxel)
@@ -296,35 +246,30 @@ class Mesh:
 
     @cached_property
     def fractions(self) -> dict[Voxel, Fraction]:
-        """Which part of each voxel is inside; voxels with none are left out. The mesh must lie in the grid."""
+        """Return which part of each voxel is inside; voxels with none are left out. The mesh must lie in the grid."""
+        if any(not 0 <= v <= self.side * UNIT for t in self.closing for p in t for v in p):
+            raise ValueError("a part of the mesh lies outside of the grid")
         volumes: dict[Voxel, Fraction] = defaultdict(Fraction)
-        for polygon, change in self._boundary():
-            for (x, y, z), piece in pieces(polygon, self.side):
-                if z < self.side - 1 and min(p[2] for p in piece) == (z + 1) * UNIT:
-                    continue  # the voxel above has this piece too
-                for b, c in zip(piece[1:], piece[2:], strict=False):
-                    area = Fraction(abs(cross(minus(b, piece[0]), minus(c, piece[0]))[2]), 2)
-                    volumes[x, y, z] += change * area * (Fraction(piece[0][2] + b[2] + c[2], 3) - z * UNIT)
-                    for below in range(z):
-                        volumes[x, y, below] += change * area * UNIT
-        return {voxel: volume / UNIT**3 for voxel, volume in volumes.items() if volume}
-
-    def half(self, *, contact: bool) -> set[Voxel]:
-        """More than half of the voxel is inside; with `contact`, exactly half suffices."""
-        least = Fraction(1, 2)
-        return {voxel for voxel, part in self.fractions.items() if part > least or (contact and part == least)}
-
-    def _boundary(self) -> Iterator[tuple[list[Point], int]]:
-        """The surface in convex parts that nothing crosses: 1 where inside lies below alone, -1 where above alone."""
         for triangle in self.closing:
             for part in self._parts(triangle) if normal_of(triangle)[2] else ():
                 above, below = self._beside(triangle, part)
-                if (above != 0) != (below != 0):
-                    yield part, 1 if below else -1
+                for (x, y, z), piece in pieces(part, self.side) if bool(above) != bool(below) else ():
+                    if z < self.side - 1 and min(p[2] for p in piece) == (z + 1) * UNIT:
+                        continue  # the voxel above has this piece too
+                    for t in fan(piece):
+                        area = Fraction(abs(normal_of(t)[2]), 2 if below else -2)
+                        volumes[x, y, z] += area * (Fraction(sum(p[2] for p in t), 3) - z * UNIT)
+                        for under in range(z):
+                            volumes[x, y, under] += area * UNIT
+        return {voxel: volume / UNIT**3 for voxel, volume in volumes.items() if volume}
 
-    def _parts(self, triangle: Triangle) -> list[list[Point]]:
-        """A triangle, cut where others cross it or lie on it."""
-        normal, parts = normal_of(triangle), [list(triangle)]
+    def half(self, *, contact: bool) -> set[Voxel]:
+        """Return voxels of which more than half is inside; with `contact`, exactly half suffices."""
+        return {voxel for voxel, part in self.fractions.items() if 2 * part > 1 or (contact and 2 * part == 1)}
+
+    def _parts(self, triangle: Triangle) -> list[Sequence[Point]]:
+        """Cut a triangle where others cross it or lie on it."""
+        normal, parts = normal_of(triangle), [triangle]
         low, high = ([f(p[i] for p in triangle) for i in range(3)] for f in (min, max))
         for other in self.closing:
             if any(max(p[i] for p in other) < low[i] or min(p[i] for p in other) > high[i] for i in range(3)):
@@ -337,21 +282,19 @@ class Mesh:
                 walls = [(cross(minus(b, a), across), a) for a, b in edges(other)]
             for wall, a in walls:
                 halves = [clip(part, lambda p: s * dot(wall, minus(p, a))) for part in parts for s in (1, -1)]  # noqa: B023
-                parts = [
-                    half
-                    for half in halves
-                    if len(half) > 2 and any(normal_of((half[0], *half[i : i + 2]))[2] for i in range(1, len(half) - 1))
-                ]
+                parts = [half for half in halves if any(normal_of(t)[2] for t in fan(half))]
         return parts
 
-    def _beside(self, triangle: Triangle, part: list[Point]) -> tuple[int, int]:
-        """The winding numbers above and below a part of a triangle. Of triangles at one height, the first is on top."""
-        for k in TRIES:
-            point = mean(part, [1 + k * (i + 1) % 97 for i in range(len(part))])
-            column = self._columns[point[0] // UNIT, point[1] // UNIT]
-            line = [(t, crossings([t], (point[0], point[1], 0), (0, 0, 1))) for t in column]
-            if all(found is not None for _, found in line):
+    def _beside(self, triangle: Triangle, part: Sequence[Point]) -> tuple[int, int]:
+        """Find the winding numbers above and below a part. Of triangles at one height, the first is on top."""
+        for k in TRIES:  # a point of the part, by weights
+            weights = [1 + k * (i + 1) % 97 for i in range(len(part))]
+            sums = (sum(w * p[i] for w, p in zip(weights, part, strict=True)) for i in range(3))
+            x, y, z = (Fraction(v, sum(weights)) for v in sums)
+            column = self._columns[x // UNIT, y // UNIT]
+            line = [crossings([t], (x, y, 0), (0, 0, 1)) for t in column]
+            if None not in line:
                 break
-        own = next(i for i, (t, _) in enumerate(line) if t is triangle)
-        above = sum(f[0][1] for i, (_, f) in enumerate(line) if f and (f[0][0], -i) > (point[2], -own))
-        return above, above + line[own][1][0][1]
+        own = next(i for i, t in enumerate(column) if t is triangle)
+        above = sum(f[0][1] for i, f in enumerate(line) if f and (f[0][0], -i) > (z, -own))
+        return above, above + line[own][0][1]
