@@ -136,6 +136,23 @@ CASES = [
         polygon((3, 3, 8.5), (13, 3, 8.5), (13, 13, 8.5), (3, 13, 8.5))
         + turned(polygon((3, 3, 8.5), (13, 3, 8.5), (13, 13, 8.5), (3, 13, 8.5))),
     ),
+    Case("plate about the centres", "ProjectPhysX/FluidX3D#281", box((3, 3, 8.5 - THIN), (13, 13, 8.5 + THIN))),
+    Case("wire along the centres", "ProjectPhysX/FluidX3D#281", box((3, *(8.5 - THIN,) * 2), (13, *(8.5 + THIN,) * 2))),
+    Case(
+        "bore along the centres",
+        "AcademySoftwareFoundation/openvdb#1867",
+        cube(3, 13) + turned(box((4, *(8.5 - THIN,) * 2), (12, *(8.5 + THIN,) * 2))),
+    ),
+    Case(
+        "gap about the centres",
+        "AcademySoftwareFoundation/openvdb#903",
+        box((3, 3, 3), (8.5 - THIN, 13, 13)) + box((8.5 + THIN, 3, 3), (14, 13, 13)),
+    ),
+    Case(
+        "ridge a little above the centres",
+        "SCIInstitute/ShapeWorks#2033",
+        prism([(2, 2.5), (14, 2.5), (14, 2.5 + THIN), (8.5, 8.5 + THIN), (2, 2.5 + THIN)], 3, 13),
+    ),
     # Rays that meet vertices and edges
     Case(
         "height field on the lattice",

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import TYPE_CHECKING
 
-from acid.checker import UNIT, cross, dot, minus
+from acid.checker import UNIT, cross, dot, edges, minus, volume6
 
 if TYPE_CHECKING:
-    from acid.cases import Case, Point
+    from acid.cases import Case
+    from acid.checker import Point, Triangle
 
 SIZE = 120
 RIGHT, UP, TOWARDS = (3, -3, 0), (-1, -1, 4), (2, 2, 1)
@@ -33,8 +35,9 @@ def picture_of(case: Case) -> str:
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{SIZE}" height="{SIZE}" stroke-linejoin="round">',
         f'<path d="{frame}" stroke="#bbb" stroke-width=".6" fill="none"/>',
-        '<g stroke="#333" stroke-width=".4">',
+        '<g stroke="#333" stroke-width=".4" fill-opacity=".8">',
     ]
+    backs = is_seen_from_behind(case.triangles)
     for triangle in sorted(case.triangles, key=lambda t: (sum(dot(TOWARDS, p) for p in t), t)):
         a, b, c = triangle
         normal = cross(minus(b, a), minus(c, a))
@@ -43,11 +46,12 @@ def picture_of(case: Case) -> str:
         bright = round(110 + 130 * shade)
         facing = dot(TOWARDS, normal) >= 0
         colour = f"#{bright * 7 // 10:02x}{bright * 8 // 10:02x}{bright:02x}" if facing else f"#{bright:02x}6050"
-        if facing or is_seen_from_behind(case):
+        if facing or backs:
             lines.append(f'<path fill="{colour}" d="{outline(list(triangle))}z"/>')
     return "\n".join([*lines, "</g></svg>", ""])
 
 
-def is_seen_from_behind(case: Case) -> bool:
-    """Whether backs may be seen: surfaces that are open, or turned."""
-    return case.meant is not None or "sheet" in case.name or "faces" in case.name or "square" in case.name
+def is_seen_from_behind(triangles: list[Triangle]) -> bool:
+    """Say whether backs may be seen: where the surface is open or turned."""
+    walked = Counter(edge for triangle in triangles for edge in edges(triangle))
+    return any(walked[a, b] != walked[b, a] for a, b in walked) or volume6(triangles) <= 0
