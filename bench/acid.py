@@ -1,10 +1,11 @@
 """The acid test of voxelizers: what each tool makes of cases after public issues, judged by its own documentation.
 
 Usage: ``python bench/acid.py [--write]``; ``--tools`` and ``--cases`` choose some. The tools come from PyPI (the group
-``acid`` of ``pyproject.toml``) and crates.io into ``build/acid``, a virtual environment of their own; voxrt runs in the
-environment of this script. Each tool runs in a process of its own with a time limit per case, so that a crash is a
-miss. What is right comes from ``acid/checker.py``, in exact fractions. ``--write`` puts the page into
-``bench/results/acid.md`` and a picture per missed case into ``docs/pictures/acid``.
+``acid`` of ``pyproject.toml``) and crates.io into ``build/acid``, a virtual environment of their own. voxrt runs in the
+environment of this script, and OpenVDB in Debian's, where its package ``python3-openvdb`` is. Each tool runs in a
+process of its own with a time limit per case, so that a crash is a miss. What is right comes from
+``acid/checker.py``, in exact fractions. ``--write`` puts the page into ``bench/results/acid.md``, and a picture per
+missed case into ``docs/pictures/acid``.
 """
 
 from __future__ import annotations
@@ -30,6 +31,7 @@ from report import ROOT, machine, options_of, publish, table
 
 ENVIRONMENT = ROOT / "build" / "acid"
 PICTURES = ROOT / "docs" / "pictures" / "acid"
+PYTHONS = {"voxrt-build": Path(sys.executable), "python3-openvdb": Path("/usr/bin/python3")}
 RUNNER = ROOT / "bench" / "acid" / "run_tool.py"
 
 
@@ -55,6 +57,18 @@ def install() -> None:
     done.touch()
 
 
+def absent() -> set[str]:
+    """Return the tools that no Python registry serves, and that are not here."""
+    missing = set() if (ENVIRONMENT / "bin" / "voxquant").exists() else {"voxquant"}
+    found = (
+        PYTHONS["python3-openvdb"].exists()
+        and not subprocess.run(
+            [PYTHONS["python3-openvdb"], "-c", "import pyopenvdb"], capture_output=True, check=False
+        ).returncode
+    )
+    return missing | (set() if found else {"OpenVDB"})
+
+
 def our_tools() -> list[Tool]:
     """Return voxrt once per rule that it has."""
     from voxrt.voxelize import voxelize  # noqa: PLC0415 - the tools that run elsewhere do without it
@@ -65,7 +79,10 @@ def our_tools() -> list[Tool]:
     others = [("voxrt centre", "exact centre"), ("voxrt half", "half")]
     return [
         touch,
-        *(replace(touch, name=n, rule=r, excluded=frozenset({"sheet"}), says=EXPLAINED[r]) for n, r in others),
+        *(
+            replace(touch, name=n, rule=r, exclusions=frozenset({"sheet"}), documentation=EXPLAINED[r])
+            for n, r in others
+        ),
     ]
 
 
@@ -81,7 +98,7 @@ def save_cases(file: Path, cases: list[Case]) -> None:
 
 def run(tool: Tool, file: Path, count: int, seconds: float) -> tuple[str, dict[int, Answer]]:
     """Run a tool on all cases: its version, and its answers. After a crash it goes on with the next case."""
-    python = sys.executable if tool.package == "voxrt-build" else ENVIRONMENT / "bin" / "python"
+    python = PYTHONS.get(tool.package, ENVIRONMENT / "bin" / "python")
     answers: dict[int, Answer] = {}
     version = ""
     while len(answers) < count:
@@ -111,12 +128,12 @@ def run(tool: Tool, file: Path, count: int, seconds: float) -> tuple[str, dict[i
     return version, answers
 
 
-def verdict(answer: Answer, must: set[Voxel], may: set[Voxel], side: int, *, bounded: bool) -> str:
+def verdict(answer: Answer, required: set[Voxel], allowed: set[Voxel], side: int, *, bounded: bool) -> str:
     """Say what is wrong with an answer; nothing where it is right. Voxels outside of the grid count if `bounded`."""
     if answer.error:
         return answer.error
-    extra = sum(bounded or all(0 <= v < side for v in voxel) for voxel in answer.voxels - may)
-    missing = len(must - answer.voxels)
+    extra = sum(bounded or all(0 <= v < side for v in voxel) for voxel in answer.voxels - allowed)
+    missing = len(required - answer.voxels)
     return ", ".join(f"{n} {word}" for n, word in ((missing, "missing"), (extra, "extra")) if n)
 
 
@@ -131,7 +148,7 @@ def page_of(cases: list[Case], tools: list[Tool], versions: dict[str, str], foun
                 tool.name,
                 versions[tool.name],
                 tool.rule,
-                tool.says,
+                tool.documentation,
                 f"{len(judged)}",
                 f"{len(judged) - wrong}",
                 f"{wrong}",
@@ -173,8 +190,7 @@ def main() -> None:
     install()
     cases = [case for case in CASES if not options.cases or case.name in options.cases]
     tools = [tool for tool in [*our_tools(), *TOOLS[1:]] if not options.tools or tool.name in options.tools]
-    if not (ENVIRONMENT / "bin" / "voxquant").exists():
-        tools = [tool for tool in tools if tool.name != "voxquant"]
+    tools = [tool for tool in tools if tool.name not in absent()]
     meshes = [Mesh(case.surface, 2**case.depth) for case in cases]
     traits = [traits_of(case) for case in cases]
     rights: dict[tuple[str, int], tuple[set[Voxel], set[Voxel]]] = {}
@@ -188,7 +204,7 @@ def main() -> None:
             versions[tool.name], answers = run(tool, file, len(cases), options.seconds)
             found[tool.name] = {}
             for index, answer in answers.items():
-                if traits[index] & tool.excluded:
+                if traits[index] & tool.exclusions:
                     continue
                 side = 2 ** cases[index].depth
                 if (tool.rule, index) not in rights:

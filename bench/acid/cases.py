@@ -46,7 +46,7 @@ class Case:
     """Repository and number of the issue, or pull request, after which it is made."""
     triangles: list[Triangle]
     depth: int = 4
-    meant: list[Triangle] | None = None
+    boundary: list[Triangle] | None = None
     """The closed surface that the triangles stand for, where they are turned, repeated or incomplete."""
     origin: Point = (0, 0, 0)
     """Where voxel (0, 0, 0) lies, in voxels."""
@@ -54,7 +54,7 @@ class Case:
     @property
     def surface(self) -> list[Triangle]:
         """The triangles by which the voxels are judged."""
-        return self.meant or self.triangles
+        return self.boundary or self.triangles
 
 
 TETRAHEDRON = faces_of([(2, 2, 2), (14, 2, 2), (2, 14, 2), (2, 2, 14)], [(0, 2, 1), (0, 3, 2), (0, 1, 3), (1, 2, 3)])
@@ -227,25 +227,25 @@ CASES = [
         star(regular(5, 7, (8, 8), 0.3)[::2] + regular(5, 7, (8, 8), 0.3)[1::2], 4, 12),
     ),
     Case("a box within a box", "pyvista/pyvista#6677", cube(2, 14) + cube(5, 11)),
-    Case("faces twice, once per way", "libigl/libigl#644", cube(3, 13) + turned(cube(3, 13)), meant=cube(3, 13)),
-    Case("faces twice", "kctess5/voxelizer#1", cube(4, 12) + cube(4, 12), meant=cube(4, 12)),
+    Case("faces twice, once per way", "libigl/libigl#644", cube(3, 13) + turned(cube(3, 13)), boundary=cube(3, 13)),
+    Case("faces twice", "kctess5/voxelizer#1", cube(4, 12) + cube(4, 12), boundary=cube(4, 12)),
     Case(
         "boxes that share a wall",
         "isl-org/Open3D#5516",
         box((2, 3, 3), (8, 13, 13)) + box((8, 3, 3), (14, 13, 13)),
-        meant=box((2, 3, 3), (14, 13, 13)),
+        boundary=box((2, 3, 3), (14, 13, 13)),
     ),
     Case(
         "triangles without an area",
         "MeshInspector/MeshLib#5733",
         cube(3, 13) + [(t[0], t[1], t[1]) for t in cube(3, 13)[:4]],
-        meant=cube(3, 13),
+        boundary=cube(3, 13),
     ),
     Case(
         "T-junctions",
         "Xiangyu-Hu/SPHinXsys#888",
         split_edge_box((3, 3, 3), (13, 13, 12)),
-        meant=box((3, 3, 3), (13, 13, 12)),
+        boundary=box((3, 3, 3), (13, 13, 12)),
     ),
     # Shells in shells
     Case("nested shells", "AcademySoftwareFoundation/openvdb#111", ball((8, 8, 8), 6.5) + turned(ball((8, 8, 8), 4))),
@@ -264,17 +264,17 @@ CASES = [
     Case("hollow cylinder", "Forceflow/cuda_voxelizer#14", tube((8, 8), (6, 3), (2, 14))),
     Case("solid sphere", "topskychen/voxelizer#14", ball((8, 8, 8), 7)),
     # Faces turned
-    Case("all faces inwards", "flexcompute/tidy3d#1976", turned(ball((8, 8, 8), 5)), meant=ball((8, 8, 8), 5)),
+    Case("all faces inwards", "flexcompute/tidy3d#1976", turned(ball((8, 8, 8), 5)), boundary=ball((8, 8, 8), 5)),
     Case(
         "every third face turned",
         "GavinBarill/fast-winding-number-soups#2",
         some_turned(ball((8, 8, 8), 6), 3),
-        meant=ball((8, 8, 8), 6),
+        boundary=ball((8, 8, 8), 6),
     ),
-    Case("one face turned", "lcpp-org/RustBCA#238", turned(HOLED_BOX[:1]) + HOLED_BOX[1:], meant=HOLED_BOX),
-    Case("one piece inwards", "PyMesh/PyMesh#93", cube(2, 7) + turned(cube(9, 14)), meant=cube(2, 7) + cube(9, 14)),
+    Case("one face turned", "lcpp-org/RustBCA#238", turned(HOLED_BOX[:1]) + HOLED_BOX[1:], boundary=HOLED_BOX),
+    Case("one piece inwards", "PyMesh/PyMesh#93", cube(2, 7) + turned(cube(9, 14)), boundary=cube(2, 7) + cube(9, 14)),
     # Holes and open surfaces
-    Case("one triangle is missing", "cpederkoff/stl-to-voxel#47", without(HOLED_BOX, 11), meant=HOLED_BOX),
+    Case("one triangle is missing", "cpederkoff/stl-to-voxel#47", without(HOLED_BOX, 11), boundary=HOLED_BOX),
     Case("open sheet", "christopherbatty/SDFGen#4", polygon((2, 3, 4.5), (13, 2, 6.5), (14, 12, 9.5), (3, 13, 7.5))),
     Case("three faces of a tetrahedron", "AcademySoftwareFoundation/openvdb#1205", TETRAHEDRON[:3]),
     Case(

@@ -163,6 +163,16 @@ def libigl_winding(vertices: Array, faces: Array, points: Array) -> Array:
     return igl.winding_number(vertices, faces.astype(np.int64), points) > 0.5
 
 
+def openvdb(vertices: Array, faces: Array, low: Array, side: int) -> Array:
+    import pyopenvdb  # noqa: PLC0415
+
+    # Its voxels have whole numbers as centres.
+    grid = pyopenvdb.FloatGrid.createLevelSetFromPolygons(vertices - low - 0.5, triangles=faces.astype(np.uint32))
+    distances = np.zeros((side,) * 3)
+    grid.copyToArray(distances)
+    return np.argwhere(distances < 0)
+
+
 def point_cloud_utils(vertices: Array, faces: Array, low: Array, _side: int) -> Array:
     import point_cloud_utils as pcu  # noqa: PLC0415
 
@@ -205,6 +215,7 @@ TOOLS: dict[str, Voxelizer] = {
     "Warp winding number": warp_query("winding_number"),
     "Warp parity": warp_query("parity"),
     "libigl": by_points(libigl_winding),
+    "OpenVDB": openvdb,
     "point-cloud-utils": point_cloud_utils,
     "voxquant": voxquant,
 }
@@ -214,6 +225,10 @@ def version_of(package: str) -> str:
     if package == "voxquant":
         program = Path(sys.prefix) / "bin" / "voxquant"
         return subprocess.run([program, "-V"], check=True, capture_output=True, text=True).stdout.split()[-1]
+    if package == "python3-openvdb":
+        import pyopenvdb  # noqa: PLC0415
+
+        return ".".join(map(str, pyopenvdb.LIBRARY_VERSION))
     try:
         return version(package)
     except PackageNotFoundError:

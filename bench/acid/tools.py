@@ -55,10 +55,10 @@ class Tool:
     package: str
     """Its name in the registry."""
     rule: str
-    excluded: frozenset[str]
+    exclusions: frozenset[str]
     """Traits of cases for which its documentation promises nothing."""
-    says: str
-    """What its documentation says, and where."""
+    documentation: str
+    """What it says, and where."""
     bounded: bool = False
     """Whether its documentation bounds the grid, so that voxels outside of it are wrong."""
 
@@ -67,14 +67,14 @@ def traits_of(case: Case) -> set[str]:
     """Return what documentations exclude: "sheet", "holes", "turned", "crossing", "float32"."""
     mesh = Mesh(case.surface, 2**case.depth)
     found = {"sheet"} if len(mesh.closing) < len(mesh.triangles) else set()
-    given = [t for t in case.triangles if any(normal_of(t))]
-    if any(count % 2 for count in Counter(frozenset(edge) for t in given for edge in edges(t)).values()):
+    faces = [t for t in case.triangles if any(normal_of(t))]
+    if any(count % 2 for count in Counter(frozenset(edge) for t in faces for edge in edges(t)).values()):
         found.add("holes")
     outwards = {cycle for a, b, c in mesh.triangles for cycle in ((a, b, c), (b, c, a), (c, a, b))}
     corners = {frozenset(t) for t in outwards}
-    if any(t not in outwards and frozenset(t) in corners for t in given):
+    if any(t not in outwards and frozenset(t) in corners for t in faces):
         found.add("turned")
-    repeated = len({frozenset(t) for t in given}) < len(given)
+    repeated = len({frozenset(t) for t in faces}) < len(faces)
     if repeated or sum(mesh.fractions.values()) * UNIT**3 != Fraction(volume6(mesh.closing), 6):
         found.add("crossing")
     points = positions(case)
@@ -92,8 +92,8 @@ SOLID = {"sheet"}
 WHOLE = SOLID | {"holes"}
 
 
-def tool(name: str, package: str, rule: str, excluded: set[str], *says: str, bounded: bool = False) -> Tool:
-    return Tool(name, package, rule, frozenset(excluded), " ".join(says), bounded=bounded)
+def tool(name: str, package: str, rule: str, exclusions: set[str], *documentation: str, bounded: bool = False) -> Tool:
+    return Tool(name, package, rule, frozenset(exclusions), " ".join(documentation), bounded=bounded)
 
 
 TOOLS = [
@@ -104,7 +104,7 @@ TOOLS = [
     tool("trimesh contains", "trimesh", "centre", WHOLE, "*Whether or not they are inside the mesh. This raises an",
          "error if called on a non-watertight mesh* (`Trimesh.contains`)"),
     tool("Open3D VoxelGrid", "open3d", "surface", set(), "*All voxels that are intersected by a triangle are set to 1,",
-         "all others are set to 0* (tutorial, Voxelization); *bounds are defined by the given parameters*",
+         "all others are set to 0* (tutorial, Voxelization); *bounds are defined by the faces parameters*",
          bounded=True),
     tool("Open3D occupancy", "open3d", "centre", WHOLE | {"crossing", "float32"}, "*Whether the query points are",
          "inside or outside*; *watertight*, *no intersections between meshes*, *Float32* (`compute_occupancy`,",
@@ -123,8 +123,11 @@ TOOLS = [
          "rays cross an odd number of faces* (`mesh_query_point_sign_parity`, 11 samples; `vec3f`)"),
     tool("libigl", "libigl", "centre", WHOLE | {"turned"}, "*The generalized winding number at each query point with",
          "respect to the mesh* (`winding_number`)"),
+    tool("OpenVDB", "python3-openvdb", "centre", WHOLE, "*A narrow-band level set volume*; *the mesh must form a",
+         "closed surface, but the surface need not be manifold and may have self intersections and degenerate faces*",
+         "(`createLevelSetFromPolygons`)"),
     tool("point-cloud-utils", "point-cloud-utils", "surface", set(), "*ijk coordinates of voxels which intersect the",
-         "given mesh* (`voxelize_triangle_mesh`)"),
+         "faces mesh* (`voxelize_triangle_mesh`)"),
     tool("voxquant", "voxquant", "thin surface", {"float32"}, "*Surface (triangle) only voxelization* (README);",
          "points of *the plane on which the triangle will take up the most area* (source of `voxelize_triangle`)"),
 ]  # fmt: skip
