@@ -143,21 +143,10 @@ def page_of(cases: list[Case], tools: list[Tool], versions: dict[str, str], foun
     for tool in tools:
         judged = found[tool.name]
         wrong = sum(1 for word in judged.values() if word)
-        rows.append(
-            (
-                tool.name,
-                versions[tool.name],
-                tool.rule,
-                tool.documentation,
-                f"{len(judged)}",
-                f"{len(judged) - wrong}",
-                f"{wrong}",
-            )
-        )
-    head = ("tool", "version", "rule", "its documentation", "judged", "right", "missed")
-    text = (
-        f"# Acid test\n\n{machine()}; {len(cases)} cases, by `bench/acid.py`.\n\n{table(head, rows, 4)}\n## Rules\n\n"
-    )
+        counts = (f"{len(judged)}", f"{len(judged) - wrong}", f"{wrong}")
+        rows.append((tool.name, versions[tool.name], tool.rule, *counts, tool.documentation))
+    head = ("tool", "version", "rule", "judged", "right", "missed", "its documentation")
+    text = f"# Acid test\n\n{machine()}; {len(cases)} cases, by `bench/acid.py`.\n\n{table(head, rows)}\n## Rules\n\n"
     used = dict.fromkeys(tool.rule for tool in tools)
     text += "".join(f"- **{rule}**: {EXPLAINED[rule]}\n" for rule in used)
     missed = [i for i, _ in enumerate(cases) if any(found[tool.name].get(i) for tool in tools)]

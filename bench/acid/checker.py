@@ -104,9 +104,8 @@ def winding(triangles: Sequence[Triangle], point: Point) -> int:
 
 def is_on(triangle: Triangle, point: Point) -> bool:
     normal = normal_of(triangle)
-    return dot(normal, minus(point, triangle[0])) == 0 and all(
-        dot(normal, cross(minus(b, a), minus(point, a))) >= 0 for a, b in edges(triangle)
-    )
+    in_plane = any(normal) and dot(normal, minus(point, triangle[0])) == 0
+    return in_plane and all(dot(normal, cross(minus(b, a), minus(point, a))) >= 0 for a, b in edges(triangle))
 
 
 def edges(triangle: Triangle) -> list[tuple[Point, Point]]:
@@ -164,7 +163,7 @@ class Mesh:
 
     def __init__(self, triangles: Sequence[Triangle], side: int, *, sheets: bool = False) -> None:
         self.side = side
-        kept = [t for t in triangles if any(normal_of(t))]
+        kept = [t for t in triangles if len(set(t)) == 3 and (not sheets or any(normal_of(t)))]
         found = [[t] for t in kept] if sheets else oriented(kept)
         self.triangles = [t for piece in found for t in piece]
         self.closing = [t for piece in found if is_closed(piece) for t in piece]
@@ -173,6 +172,7 @@ class Mesh:
     def _met(self) -> tuple[set[Voxel], set[Voxel], set[Voxel]]:
         """Return voxels that the surface meets: in their interior; at all; and those behind faces between voxels."""
         interior, contact, behind = set(), set(), set()
+        between_voxels = range(0, self.side * UNIT + 1, UNIT)
         for triangle in self.triangles:
             for voxel, piece in pieces(triangle, self.side):
                 contact.add(voxel)
@@ -180,7 +180,7 @@ class Mesh:
             normal = normal_of(triangle)
             for axis in range(3):
                 plane = triangle[0][axis]
-                if normal[axis] and plane % UNIT == 0 and all(p[axis] == plane for p in triangle):
+                if normal[axis] and plane in between_voxels and all(p[axis] == plane for p in triangle):
                     layer = min(max(plane // UNIT - (normal[axis] > 0), 0), self.side - 1)
                     inner = layer * UNIT + UNIT // 2
                     flat = [tuple(inner if i == axis else v for i, v in enumerate(p)) for p in triangle]

@@ -104,7 +104,7 @@ TOOLS = [
     tool("trimesh contains", "trimesh", "centre", WHOLE, "*Whether or not they are inside the mesh. This raises an",
          "error if called on a non-watertight mesh* (`Trimesh.contains`)"),
     tool("Open3D VoxelGrid", "open3d", "surface", set(), "*All voxels that are intersected by a triangle are set to 1,",
-         "all others are set to 0* (tutorial, Voxelization); *bounds are defined by the faces parameters*",
+         "all others are set to 0* (tutorial, Voxelization); *bounds are defined by the given parameters*",
          bounded=True),
     tool("Open3D occupancy", "open3d", "centre", WHOLE | {"crossing", "float32"}, "*Whether the query points are",
          "inside or outside*; *watertight*, *no intersections between meshes*, *Float32* (`compute_occupancy`,",
@@ -127,7 +127,7 @@ TOOLS = [
          "closed surface, but the surface need not be manifold and may have self intersections and degenerate faces*",
          "(`createLevelSetFromPolygons`)"),
     tool("point-cloud-utils", "point-cloud-utils", "surface", set(), "*ijk coordinates of voxels which intersect the",
-         "faces mesh* (`voxelize_triangle_mesh`)"),
+         "given mesh* (`voxelize_triangle_mesh`)"),
     tool("voxquant", "voxquant", "thin surface", {"float32"}, "*Surface (triangle) only voxelization* (README);",
          "points of *the plane on which the triangle will take up the most area* (source of `voxelize_triangle`)"),
 ]  # fmt: skip
