@@ -73,7 +73,6 @@ def trimesh_voxelized(vertices: Array, faces: Array, low: Array, _side: int) -> 
 def trimesh_contains(vertices: Array, faces: Array, points: Array) -> Array:
     import trimesh  # noqa: PLC0415
 
-    np.random.seed(0)  # noqa: NPY002 - its rays are random
     return trimesh.Trimesh(vertices, faces).contains(points)
 
 

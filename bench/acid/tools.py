@@ -102,7 +102,7 @@ TOOLS = [
     tool("trimesh voxelized", "trimesh", "samples of the surface", set(), "*Subdividing a mesh until every edge is",
          "shorter than: (pitch / edge_factor)* (`voxelize_subdivide`)"),
     tool("trimesh contains", "trimesh", "centre", WHOLE, "*Whether or not they are inside the mesh. This raises an",
-         "error if called on a non-watertight mesh* (`Trimesh.contains`)"),
+         "error if called on a non-watertight mesh* (`Trimesh.contains`; its rays are random, so counts vary)"),
     tool("Open3D VoxelGrid", "open3d", "surface", set(), "*All voxels that are intersected by a triangle are set to 1,",
          "all others are set to 0* (tutorial, Voxelization); *bounds are defined by the given parameters*",
          bounded=True),
