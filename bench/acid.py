@@ -10,7 +10,6 @@ missed case into ``docs/pictures/acid``.
 
 from __future__ import annotations
 
-import inspect
 import json
 import os
 import shutil
@@ -19,7 +18,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -28,6 +27,8 @@ from acid.checker import Mesh, Voxel
 from acid.picture import picture_of
 from acid.tools import EXPLAINED, RULES, TOOLS, Tool, positions, traits_of
 from report import ROOT, machine, options_of, publish, table
+
+from voxrt.voxelize.rules import RULES as RULES_OF_VOXRT
 
 ENVIRONMENT = ROOT / "build" / "acid"
 PICTURES = ROOT / "docs" / "pictures" / "acid"
@@ -58,32 +59,17 @@ def install() -> None:
 
 
 def absent() -> set[str]:
-    """Return the tools that no Python registry serves, and that are not here."""
-    missing = set() if (ENVIRONMENT / "bin" / "voxquant").exists() else {"voxquant"}
-    found = (
-        PYTHONS["python3-openvdb"].exists()
-        and not subprocess.run(
-            [PYTHONS["python3-openvdb"], "-c", "import pyopenvdb"], capture_output=True, check=False
-        ).returncode
-    )
-    return missing | (set() if found else {"OpenVDB"})
-
-
-def our_tools() -> list[Tool]:
-    """Return voxrt once per rule that it has."""
-    from voxrt.voxelize import voxelize  # noqa: PLC0415 - the tools that run elsewhere do without it
-
-    touch = TOOLS[0]
-    if "rule" not in inspect.signature(voxelize).parameters:
-        return [touch]
-    others = [("voxrt centre", "exact centre"), ("voxrt half", "half")]
-    return [
-        touch,
-        *(
-            replace(touch, name=n, rule=r, exclusions=frozenset({"sheet"}), documentation=EXPLAINED[r])
-            for n, r in others
-        ),
-    ]
+    """Return the tools that no Python registry serves and that are not here, and rules that voxrt lacks."""
+    missing = {f"voxrt {rule}" for rule in {"touch", "centre", "half"} - set(RULES_OF_VOXRT)}
+    if not (ENVIRONMENT / "bin" / "voxquant").exists():
+        missing.add("voxquant")
+    python = PYTHONS["python3-openvdb"]
+    if (
+        not python.exists()
+        or subprocess.run([python, "-c", "import pyopenvdb"], capture_output=True, check=False).returncode
+    ):
+        missing.add("OpenVDB")
+    return missing
 
 
 def save_cases(file: Path, cases: list[Case]) -> None:
@@ -178,7 +164,7 @@ def main() -> None:
     options = parser.parse_args()
     install()
     cases = [case for case in CASES if not options.cases or case.name in options.cases]
-    tools = [tool for tool in [*our_tools(), *TOOLS[1:]] if not options.tools or tool.name in options.tools]
+    tools = [tool for tool in TOOLS if not options.tools or tool.name in options.tools]
     tools = [tool for tool in tools if tool.name not in absent()]
     meshes = [Mesh(case.surface, 2**case.depth) for case in cases]
     traits = [traits_of(case) for case in cases]

@@ -67,7 +67,7 @@ CASES = [
     # Boxes and the planes of the grid
     Case("cube of ten", "cpederkoff/stl-to-voxel#51", cube(3, 13)),
     Case("cube of eight, the whole grid", "Forceflow/cuda_voxelizer#64", cube(0, 8), depth=3),
-    Case("sphere of fifty to sixty-four", "tunabrain/sparse-voxel-octrees#5", ball((8, 8, 8), 8, 8, 12)),
+    Case("sphere as large as the grid", "tunabrain/sparse-voxel-octrees#5", ball((8, 8, 8), 8, 8, 12)),
     Case("face on the last plane", "imagej/imagej-ops#603", box((4, 4, 9), (12, 12, 16))),
     Case("cube between the planes", "karimnaaji/voxelizer#9", box((0.5, 0.49, 0.51), (6.5, 6.51, 6.49))),
     Case("faces on some planes", "Forceflow/cuda_voxelizer#7", box((2, 3.5, 4), (11, 9.25, 12))),

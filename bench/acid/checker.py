@@ -1,9 +1,7 @@
 """Which voxels belong to a mesh, by each rule: exact, in integers and fractions, by brute force.
 
-It shares no code with voxrt. Points are triples in units of 1/4096 voxel. A triangle is cut by the planes between
-voxels, so that each piece lies in one voxel. A piece that lies in no side of its voxel meets the interior. A voxel
-whose interior no piece meets is inside or outside as a whole: a vertical line through it counts how often it enters
-and leaves, which gives the winding number. Volumes are sums of what lies below each piece.
+A triangle is cut by the planes between voxels. A piece that lies in no side of its voxel meets the interior. A voxel of
+which no piece meets the interior is inside or outside: a vertical line counts the windings. Units: 1/4096 voxel.
 """
 
 from __future__ import annotations
@@ -98,7 +96,7 @@ def crossings(triangles: Iterable[Triangle], origin: Point, along: Point) -> lis
 
 def winding(triangles: Sequence[Triangle], point: Point) -> int:
     """Count how often a closed surface winds about a point that is not on it."""
-    lines = (crossings(triangles, point, (7919 + 13 * k, 104729 + 31 * k, 1299709 + 57 * k * k)) for k in TRIES)
+    lines = (crossings(triangles, point, (7919 + 13 * k, 104729 + 31 * k, 10**9)) for k in TRIES)
     return sum(sign for t, sign in next(line for line in lines if line is not None) if t > 0)
 
 
@@ -165,8 +163,9 @@ class Mesh:
         self.side = side
         kept = [t for t in triangles if len(set(t)) == 3 and (not sheets or any(normal_of(t)))]
         found = [[t] for t in kept] if sheets else oriented(kept)
-        self.triangles = [t for piece in found for t in piece]
         self.closing = [t for piece in found if is_closed(piece) for t in piece]
+        self.sheets = [t for piece in found if not is_closed(piece) for t in piece]
+        self.triangles = self.closing + self.sheets
 
     @cached_property
     def _met(self) -> tuple[set[Voxel], set[Voxel], set[Voxel]]:
@@ -239,8 +238,9 @@ class Mesh:
         found = set(self._inside)
         for voxel in self._met[0]:
             middle = tuple(v * UNIT + UNIT // 2 for v in voxel)
-            on = any(is_on(t, middle) for t in self.triangles)
-            if contact if on else winding(self.closing, middle):
+            near = self._columns.get(voxel[:2], [])  # a steep line stays in the column
+            on = any(is_on(t, middle) for t in near + self.sheets)
+            if contact if on else winding(near, middle):
                 found.add(voxel)
         return found
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from acid.checker import UNIT, Mesh, edges, normal_of, volume6
+from acid.checker import UNIT, Mesh, edges, is_closed, normal_of, oriented, volume6
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -66,7 +66,8 @@ class Tool:
 def traits_of(case: Case) -> set[str]:
     """Return what documentations exclude: "sheet", "holes", "turned", "crossing", "float32"."""
     mesh = Mesh(case.surface, 2**case.depth)
-    found = {"sheet"} if len(mesh.closing) < len(mesh.triangles) else set()
+    encloses = all(is_closed(piece) and volume6(piece) for piece in oriented(case.surface))
+    found = set() if encloses else {"sheet"}
     faces = [t for t in case.triangles if any(normal_of(t))]
     if any(count % 2 for count in Counter(frozenset(edge) for t in faces for edge in edges(t)).values()):
         found.add("holes")
@@ -99,6 +100,10 @@ def tool(name: str, package: str, rule: str, exclusions: set[str], *documentatio
 TOOLS = [
     tool("voxrt touch", "voxrt-build", "touch", set(), "*A voxel belongs to an object if the closed solid meets the",
          "interior of the voxel at all* (manual, Voxels)"),
+    tool("voxrt centre", "voxrt-build", "exact centre", SOLID, "*Filled if its centre lies in the closed solid of an",
+         "object. On the surface counts* (manual, Voxels; `--thin drop`)"),
+    tool("voxrt half", "voxrt-build", "half", SOLID, "*Volume fractions add up to at least one half* (manual, Voxels;",
+         "`--thin drop`)"),
     tool("trimesh voxelized", "trimesh", "samples of the surface", set(), "*Subdividing a mesh until every edge is",
          "shorter than: (pitch / edge_factor)* (`voxelize_subdivide`)"),
     tool("trimesh contains", "trimesh", "centre", WHOLE, "*Whether or not they are inside the mesh. This raises an",
