@@ -244,28 +244,28 @@ class Mesh:
                 found.add(voxel)
         return found
 
-    @cached_property
-    def fractions(self) -> dict[Voxel, Fraction]:
-        """Return which part of each voxel is inside; voxels with none are left out. The mesh must lie in the grid."""
+    def fractions(self, *, windings: bool = False) -> dict[Voxel, Fraction]:
+        """Return which part of each voxel is inside, or with `windings` how often. The mesh must lie in the grid."""
         if any(not 0 <= v <= self.side * UNIT for t in self.closing for p in t for v in p):
             raise ValueError("a part of the mesh lies outside of the grid")
         volumes: dict[Voxel, Fraction] = defaultdict(Fraction)
         for triangle in self.closing:
             for part in self._parts(triangle) if normal_of(triangle)[2] else ():
                 above, below = self._beside(triangle, part)
-                for (x, y, z), piece in pieces(part, self.side) if bool(above) != bool(below) else ():
+                weight = below - above if windings else bool(below) - bool(above)
+                for (x, y, z), piece in pieces(part, self.side) if weight else ():
                     if z < self.side - 1 and min(p[2] for p in piece) == (z + 1) * UNIT:
                         continue  # the voxel above has this piece too
                     for t in fan(piece):
-                        area = Fraction(abs(normal_of(t)[2]), 2 if below else -2)
+                        area = weight * Fraction(abs(normal_of(t)[2]), 2)
                         volumes[x, y, z] += area * (Fraction(sum(p[2] for p in t), 3) - z * UNIT)
                         for under in range(z):
                             volumes[x, y, under] += area * UNIT
         return {voxel: volume / UNIT**3 for voxel, volume in volumes.items() if volume}
 
-    def half(self, *, contact: bool) -> set[Voxel]:
-        """Return voxels of which more than half is inside; with `contact`, exactly half suffices."""
-        return {voxel for voxel, part in self.fractions.items() if 2 * part > 1 or (contact and 2 * part == 1)}
+    def half(self, *, windings: bool = False) -> set[Voxel]:
+        """Return voxels of which at least half is inside; with `windings`, volume counts as often as it is enclosed."""
+        return {voxel for voxel, part in self.fractions(windings=windings).items() if 2 * abs(part) >= 1}
 
     def _parts(self, triangle: Triangle) -> list[Sequence[Point]]:
         """Cut a triangle where others cross it or lie on it."""

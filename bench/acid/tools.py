@@ -28,7 +28,7 @@ RULES: dict[str, Callable[[Mesh], tuple[set[Voxel], set[Voxel]]]] = {
     "touch": lambda mesh: (mesh.touch(), mesh.touch()),
     "centre": lambda mesh: (mesh.centre(contact=False), mesh.centre(contact=True)),
     "exact centre": lambda mesh: (mesh.centre(contact=True),) * 2,
-    "half": lambda mesh: (mesh.half(contact=True),) * 2,
+    "half": lambda mesh: (mesh.half(windings=True),) * 2,
     "surface": lambda mesh: (mesh.surface(contact=False), mesh.surface(contact=True)),
     "thin surface": lambda mesh: (mesh.surface_within(Fraction(1, 2), across=True), mesh.surface(contact=True)),
     "samples of the surface": lambda mesh: (mesh.surface_within(SAMPLED), mesh.surface(contact=True)),
@@ -39,7 +39,7 @@ EXPLAINED = {
     "touch": "the solid meets the voxel's interior",
     "centre": "the voxel's centre is inside",
     "exact centre": "the voxel's centre is inside or on the surface",
-    "half": "half of the voxel or more is inside",
+    "half": "at least half of the voxel is inside, where what is enclosed twice counts twice",
     "surface": "a triangle meets the voxel",
     "thin surface": "a triangle meets the voxel's middle line along the axis that it faces most; no voxel elsewhere",
     "samples of the surface": "a corner lies in the voxel once the edges are half a voxel long; no voxel elsewhere",
@@ -76,7 +76,7 @@ def traits_of(case: Case) -> set[str]:
     if any(t not in outwards and frozenset(t) in corners for t in faces):
         found.add("turned")
     repeated = len({frozenset(t) for t in faces}) < len(faces)
-    if repeated or sum(mesh.fractions.values()) * UNIT**3 != Fraction(volume6(mesh.closing), 6):
+    if repeated or sum(mesh.fractions().values()) * UNIT**3 != Fraction(volume6(mesh.closing), 6):
         found.add("crossing")
     points = positions(case)
     if (points.astype(np.float32) != points).any():
@@ -102,8 +102,8 @@ TOOLS = [
          "interior of the voxel at all* (manual, Voxels)"),
     tool("voxrt centre", "voxrt-build", "exact centre", SOLID, "*Filled if its centre lies in the closed solid of an",
          "object. On the surface counts* (manual, Voxels; `--thin drop`)"),
-    tool("voxrt half", "voxrt-build", "half", SOLID, "*Volume fractions add up to at least one half* (manual, Voxels;",
-         "`--thin drop`)"),
+    tool("voxrt half", "voxrt-build", "half", SOLID, "*Filled if the volumes of the objects in it add up to at",
+         "least half of it* (manual, Voxels; `--thin drop`)"),
     tool("trimesh voxelized", "trimesh", "samples of the surface", set(), "*Subdividing a mesh until every edge is",
          "shorter than: (pitch / edge_factor)* (`voxelize_subdivide`)"),
     tool("trimesh contains", "trimesh", "centre", WHOLE, "*Whether or not they are inside the mesh. This raises an",
