@@ -188,7 +188,6 @@ class Mesh:
 
     @cached_property
     def _columns(self) -> dict[tuple[int, int], list[Triangle]]:
-        """Return the closing triangles above and below each column of voxels."""
         at = defaultdict(list)
         for triangle in self.closing:
             ends = ((min(p[i] for p in triangle), max(p[i] for p in triangle)) for i in (0, 1))
@@ -198,7 +197,6 @@ class Mesh:
 
     @cached_property
     def _inside(self) -> set[Voxel]:
-        """Return voxels wholly inside: the surface does not meet their interior."""
         found = set()
         for x, y in product(range(self.side), repeat=2):
             points = ((x * UNIT + 1 + 577 * k % (UNIT - 1), y * UNIT + 1 + 1409 * k % (UNIT - 1), 0) for k in TRIES)
@@ -268,16 +266,16 @@ class Mesh:
         return {voxel for voxel, part in self.fractions(windings=windings).items() if 2 * abs(part) >= 1}
 
     def _parts(self, triangle: Triangle) -> list[Sequence[Point]]:
-        """Cut a triangle where others cross it or lie on it."""
         normal, parts = normal_of(triangle), [triangle]
         low, high = ([f(p[i] for p in triangle) for i in range(3)] for f in (min, max))
         for other in self.closing:
-            if any(max(p[i] for p in other) < low[i] or min(p[i] for p in other) > high[i] for i in range(3)):
-                continue
             across = normal_of(other)
+            apart = (max(p[i] for p in other) < low[i] or min(p[i] for p in other) > high[i] for i in range(3))
+            if not any(across) or any(apart):
+                continue
             sides = [dot(across, minus(p, other[0])) for p in triangle]
-            apart = [dot(normal, minus(p, triangle[0])) for p in other]
-            walls = [(across, other[0])] if min(sides) < 0 < max(sides) and min(apart) <= 0 <= max(apart) else []
+            ends = [dot(normal, minus(p, triangle[0])) for p in other]
+            walls = [(across, other[0])] if min(sides) < 0 < max(sides) and min(ends) <= 0 <= max(ends) else []
             if not any(sides) and other is not triangle:
                 walls = [(cross(minus(b, a), across), a) for a, b in edges(other)]
             for wall, a in walls:
@@ -295,6 +293,8 @@ class Mesh:
             line = [crossings([t], (x, y, 0), (0, 0, 1)) for t in column]
             if None not in line:
                 break
+        else:
+            raise ArithmeticError("every line meets an edge")
         own = next(i for i, t in enumerate(column) if t is triangle)
         above = sum(f[0][1] for i, f in enumerate(line) if f and (f[0][0], -i) > (z, -own))
         return above, above + line[own][0][1]

@@ -19,7 +19,7 @@ sys.path.append(str(BENCH))
 
 from acid import checker  # noqa: E402 - found there
 from acid.cases import CASES  # noqa: E402
-from acid.shapes import ball, box, cube, rotation, turned  # noqa: E402
+from acid.shapes import ball, box, cube, rotation, star, turned  # noqa: E402
 
 UNIT = checker.UNIT
 
@@ -122,6 +122,14 @@ def test_what_overlaps_counts_once():
     both = checker.Mesh(one + other, 16).fractions()
     assert max(apart) < sum(both.values()) < sum(apart)
     assert max(both.values()) == 1
+
+
+def test_faces_without_an_area_add_nothing():
+    bow_tie = star([(0.5, 0.5), (4.5, 4.5), (4.5, 0.5), (0.5, 4.5)], 0, 4)  # its middle lies on two of its sides
+    mesh = checker.Mesh(bow_tie, 8)
+    assert checker.volume6(bow_tie) == sum(mesh.fractions(windings=True).values()) == 0
+    assert sum(mesh.fractions().values()) == 8 * 4
+    assert mesh.fractions()[2, 2, 0] == Fraction(1, 2)
 
 
 def test_bounds_of_the_rules():
