@@ -24,6 +24,7 @@ TITLES = {
 def page(path: Path) -> str:
     """Give the text of the page of one file of results."""
     text = path.read_text(encoding="utf-8")
+    text = text.replace("(../../docs/", "(../")  # pictures, as seen from the page
     own, rest = text[2:].split("\n", 1) if text.startswith("# ") else (path.stem.capitalize(), text)
     title = TITLES.get(path.stem, own)
     return f"# {title}\n\nThe file `bench/results/{path.name}`, as its benchmark wrote it.\n\n{rest.lstrip()}"
