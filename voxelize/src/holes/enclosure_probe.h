@@ -94,9 +94,11 @@ private:
     static Lines lines(double from, double to, double low, double step) {
         if (!(step > 0))
             return {0, -1};
-        return {std::max(0, int(std::floor((from - low) / step - kOffset))),
-                std::min(kSide - 1, int(std::ceil((to - low) / step - kOffset)))};
+        return {std::max(0, place(std::floor((from - low) / step - kOffset))),
+                std::min(kSide - 1, place(std::ceil((to - low) / step - kOffset)))};
     }
+    /// A place in the lattice, or one beside it: coordinates may be beyond all integers.
+    static int place(double at) { return at > -1 ? int(std::min(at, double(kSide))) : -1; }
     Point at(int i, int j, int k) const {
         return {low_.x + (i + kOffset) * step_.x, low_.y + (j + kOffset) * step_.y, low_.z + (k + kOffset) * step_.z};
     }
@@ -114,9 +116,11 @@ private:
         const double u = orientation(b, c), v = orientation(c, a), w = orientation(a, b), sum = u + v + w;
         if (sum == 0 || !((u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0)))
             return;
+        if (!(step_.z > 0))
+            return;
         const double z = (u * a.z + v * b.z + w * c.z) / sum;
-        const int first = std::max(0, int(std::floor((z - low_.z) / step_.z - kOffset)) + 1);
-        if (step_.z > 0 && first < kSide)
+        const int first = place(std::floor((z - low_.z) / step_.z - kOffset)) + 1;
+        if (first < kSide)
             changes_[j][i][first] += sum > 0 ? -1 : 1;
     }
 
