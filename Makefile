@@ -141,7 +141,7 @@ web: site $(VENV)/.tools
 SANITIZERS := address-undefined thread
 ROOMS := voxelize octree sim
 voxelize_programs := voxelize colour
-octree_programs := octree mesh_to_ray query_octree
+octree_programs := octree edit mesh_to_ray query_octree
 sim_programs := fit bake
 SANITIZED = $(foreach room,$(ROOMS),$($(room)_programs))
 sanitize: $(foreach program,$(SANITIZED),$(SANITIZERS:%=build/sanitize/%/$(program)))
@@ -200,6 +200,7 @@ $(eval $(call program,bake,tests/sim/native/bake.cpp,sim octree voxelize))
 $(eval $(call program,voxelize,tests/voxelize/native/exercise.cpp,voxelize))
 $(eval $(call program,colour,tests/voxelize/native/colour.cpp,voxelize))
 $(eval $(call program,octree,tests/octree/native/exercise.cpp,octree voxelize))
+$(eval $(call program,edit,tests/octree/native/edit.cpp,octree voxelize))
 $(eval $(call program,mesh_to_ray,examples/cpp/mesh_to_ray.cpp,octree voxelize))
 $(eval $(call program,query_octree,examples/cpp/query_octree.cpp,octree voxelize))
 

@@ -37,10 +37,15 @@ from voxrt.octree.octant import octant_at as octant_at
 from voxrt.octree.octree import MAX_DEPTH as MAX_DEPTH
 from voxrt.octree.octree import Octree as Octree
 from voxrt.octree.owners import Owners as Owners
+from voxrt.octree.patch import Patch as Patch
+from voxrt.octree.piece import Piece as Piece
 from voxrt.octree.query import count_in_box as count_in_box
 from voxrt.octree.query import material_at as material_at
 from voxrt.octree.query import solid_bounds as solid_bounds
 from voxrt.octree.rom import Rom as Rom
+from voxrt.octree.shapes import Box as Box
+from voxrt.octree.shapes import Capsule as Capsule
+from voxrt.octree.shapes import Sphere as Sphere
 from voxrt.octree.statistics import Census as Census
 from voxrt.octree.statistics import census as census
 from voxrt.octree.vdb import from_vdb as from_vdb
@@ -49,3 +54,5 @@ from voxrt.octree.voxel_arrays import to_dense as to_dense
 from voxrt.octree.voxel_arrays import to_points as to_points
 from voxrt.octree.words import DIALECTS as DIALECTS
 from voxrt.octree.words import Dialect as Dialect
+from voxrt.octree.world import World as World
+from voxrt.octree.world_figures import WorldFigures as WorldFigures

@@ -47,12 +47,8 @@ def material_at(octree: Octree, points: ArrayLike) -> NDArray[np.uint8]:
     array([7, 0, 0], dtype=uint8)
     """
     instance("octree", octree, Octree)
-    voxels = np.asarray(points)
-    if voxels.shape[-1:] != (3,):
-        raise ValueError(f"points must have shape (..., 3), not {voxels.shape}")
-    rows = whole_array("points", voxels.reshape(-1, 3), ("N", 3), np.int64, low=-(1 << 62), high=1 << 62)
-    found = _native.materials_at(octree.words, octree.depth, np.ascontiguousarray(rows))
-    return found.reshape(voxels.shape[:-1])
+    rows, shape = as_points(points)
+    return _native.materials_at(octree.words, octree.depth, rows).reshape(shape)
 
 
 def count_in_box(octree: Octree, low: Corner, high: Corner) -> dict[int, int]:
@@ -102,6 +98,15 @@ def solid_bounds(octree: Octree) -> tuple[Corner, Corner] | None:
     """
     instance("octree", octree, Octree)
     return _native.solid_bounds(octree.words, octree.depth)
+
+
+def as_points(points: ArrayLike) -> tuple[NDArray[np.int64], tuple[int, ...]]:
+    """Check voxels, integers of shape (..., 3); return them as rows, and the shape without the last axis."""
+    voxels = np.asarray(points)
+    if voxels.shape[-1:] != (3,):
+        raise ValueError(f"points must have shape (..., 3), not {voxels.shape}")
+    rows = whole_array("points", voxels.reshape(-1, 3), ("N", 3), np.int64, low=-(1 << 62), high=1 << 62)
+    return np.ascontiguousarray(rows), voxels.shape[:-1]
 
 
 def as_box(low: object, high: object) -> tuple[Corner, Corner]:

@@ -26,6 +26,8 @@ from voxrt.sim.path import RayPath as RayPath
 from voxrt.sim.path import Reading as Reading
 from voxrt.sim.path import follow_pixel as follow_pixel
 from voxrt.sim.path import follow_ray as follow_ray
+from voxrt.sim.picking import Picked as Picked
+from voxrt.sim.picking import pick as pick
 from voxrt.sim.pixel_colour import PixelColour as PixelColour
 from voxrt.sim.pixel_colour import explain_colour as explain_colour
 from voxrt.sim.ray_query import RayHits as RayHits

@@ -108,6 +108,14 @@ def cast_rays(octree: Octree, origins: ArrayLike, directions: ArrayLike, *, thre
     return RayHits(material != 0, material, face, voxel, parameter, distance)
 
 
+def register_rays(origins: ArrayLike, directions: ArrayLike) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """Return the origins and directions of a few rays as the registers hold them, int32, shapes (N, 3).
+
+    They are refused as :func:`cast_rays` says.
+    """
+    return _places(_triples("origins", origins), 0), _steps(_triples("directions", directions), 0)[0]
+
+
 def _triples(name: str, value: ArrayLike) -> NDArray[np.float64]:
     """Return finite numbers, float64, shape (N, 3)."""
     numbers = np.asarray(value)

@@ -30,10 +30,10 @@ RETURNED = {
     "voxrt.export.Manifest", "voxrt.export.RomFiles", "voxrt.export.RomInfo", "voxrt.export.WordFile",
     "voxrt.building.fitting.BudgetFit", "voxrt.building.fitting.InteriorFit",
     "voxrt.views.depth_likeness.LikenessAtDepth",
-    "voxrt.octree.Census", "voxrt.octree.Difference", "voxrt.octree.Fit", "voxrt.octree.Leaves", "voxrt.octree.Octant",
+    "voxrt.octree.Census", "voxrt.octree.Piece", "voxrt.octree.WorldFigures", "voxrt.octree.Difference", "voxrt.octree.Fit", "voxrt.octree.Leaves", "voxrt.octree.Octant",
     "voxrt.octree.Region", "voxrt.octree.SurfaceChange", "voxrt.sim.Comparison", "voxrt.sim.EngineCheck",
     "voxrt.sim.Frame", "voxrt.sim.Likeness",
-    "voxrt.sim.PixelColour", "voxrt.sim.RayHits", "voxrt.sim.Reading", "voxrt.sim.RenderCost",
+    "voxrt.sim.Picked", "voxrt.sim.PixelColour", "voxrt.sim.RayHits", "voxrt.sim.Reading", "voxrt.sim.RenderCost",
     "voxrt.sim.View", "voxrt.view.DrawnRay", "voxrt.view.Preview",
 }  # fmt: skip
 """Values that a function returns: the function has the example."""

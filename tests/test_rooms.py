@@ -43,7 +43,7 @@ INSIDE_SOURCES = {
         "colour",
         "bindings",
     ),
-    "octree/src": ("words", "pool", "build", "files", "query", "sight", "budget", "bindings"),
+    "octree/src": ("words", "pool", "build", "files", "query", "edit", "sight", "budget", "bindings"),
     "sim/src/model": ("rays", "frames", "views", "bindings"),
     "sim/src/bake": ("surface", "rays", "light", "bindings"),
 }

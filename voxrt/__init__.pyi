@@ -7,6 +7,7 @@ from voxrt import view as view
 from voxrt import voxelize as voxelize
 from voxrt.building.animation import build_animation as build_animation
 from voxrt.building.baking import Bake as Bake
+from voxrt.building.edit_script import run_edit_script as run_edit_script
 from voxrt.building.fitting import BudgetFit as BudgetFit
 from voxrt.building.fitting import InteriorFit as InteriorFit
 from voxrt.building.fractions import volume_fractions as volume_fractions
@@ -20,10 +21,15 @@ from voxrt.export import read_rom as read_rom
 from voxrt.export import rom_info as rom_info
 from voxrt.export.outputs import OutputError as OutputError
 from voxrt.octree import BOARDS as BOARDS
+from voxrt.octree import Box as Box
+from voxrt.octree import Capsule as Capsule
 from voxrt.octree import Octree as Octree
+from voxrt.octree import Patch as Patch
 from voxrt.octree import Region as Region
 from voxrt.octree import Rom as Rom
 from voxrt.octree import RomError as RomError
+from voxrt.octree import Sphere as Sphere
+from voxrt.octree import World as World
 from voxrt.octree import diff as diff
 from voxrt.octree import differing_regions as differing_regions
 from voxrt.octree.camera import Camera as Camera
@@ -40,6 +46,7 @@ from voxrt.sim import check as check
 from voxrt.sim import compare as compare
 from voxrt.sim import comparison_sheet as comparison_sheet
 from voxrt.sim import follow_ray as follow_ray
+from voxrt.sim import pick as pick
 from voxrt.sim import shader_features as shader_features
 from voxrt.sources.frames import frame_times as frame_times
 from voxrt.view import ViewerError as ViewerError

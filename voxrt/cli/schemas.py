@@ -8,13 +8,21 @@ import msgspec
 
 from voxrt.cli.results.board_results import ServeResult, UploadResult
 from voxrt.cli.results.build_results import BuildReport, RenderResult
-from voxrt.cli.results.memory_results import CompareResult, ConvertResult, DiffResult, InfoResult, TraceResult
+from voxrt.cli.results.memory_results import (
+    CompareResult,
+    ConvertResult,
+    DiffResult,
+    EditResult,
+    InfoResult,
+    TraceResult,
+)
 
 _RESULTS = (
     BuildReport,
     RenderResult,
     CompareResult,
     ConvertResult,
+    EditResult,
     InfoResult,
     DiffResult,
     TraceResult,

@@ -72,6 +72,13 @@ COMMANDS = {
         "memory_commands:ConvertCommand",
         "voxrt convert courtyard.mem courtyard.blob",
     ),
+    "edit": Command(
+        "Edit the voxels of a memory by a script, and write the result.",
+        "memory_commands:EditCommand",
+        "voxrt edit courtyard.mem --script edits.jsonl -o edited.mem",
+        'A line of the script is an operation, such as {"op": "fill", "sphere": {"centre": [64, 20, 64], "radius": 9}, '
+        '"material": 0}. The operations are set, fill, paint, paste, material, undo and redo.',
+    ),
     "info": Command(
         "Print what a memory holds: its size, levels and materials.",
         "memory_commands:InfoCommand",

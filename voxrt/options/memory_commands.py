@@ -1,4 +1,4 @@
-"""The command lines of what reads and writes memories: convert, info and diff."""
+"""The command lines of what reads and writes memories: convert, edit, info and diff."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import MISSING, dataclass
 from pathlib import Path
 from typing import Literal
 
-from voxrt.options.kinds import INTEGER, file, one_of, texts
+from voxrt.options.kinds import INTEGER, file, one_of, texts, whole
 from voxrt.options.option import ARGUMENTS, nested, option
 from voxrt.options.shared import CONFIG, DEPTH, DIALECT, HARDWARE, MEMORY, OUTPUT, SCENE, SIZE, Dialect, ReportOptions
 
@@ -40,6 +40,25 @@ class ConvertCommand:
         "light or mirrors.")
     size: tuple[int, int] | None = SIZE.field(default=None, group=HARDWARE,
         help="With {form} core: width and height of the frame in pixels. The default is 640x480.")
+    reporting: ReportOptions = nested(ReportOptions)
+
+
+@dataclass(frozen=True, kw_only=True)
+class EditCommand:
+    """What ``voxrt edit`` takes."""
+
+    source: Path = option(file("ROM|ASSET"), MISSING, ARGUMENTS,
+        "A memory in any format, or an asset, which is built first.")
+    script: Path = option(file("EDITS.jsonl"), MISSING, OUTPUT,
+        "The edits: a file with an operation per line, as JSON.")
+    output: Path = option(file("FILE"), MISSING, OUTPUT,
+        "The file to write, in a format that voxrt convert writes. It may be the memory that is read.",
+        flags=("--output", "-o"))
+    depth: int | None = DEPTH.field()
+    dialect: Dialect | None = DIALECT.field(
+        help="How the file encodes materials. The default is report, or lod if the memory has mean materials.")
+    undo_steps: int = option(whole(0, 1_000_000), 100, MEMORY,
+        "How many edits an operation undo can go back.", is_rare=True)
     reporting: ReportOptions = nested(ReportOptions)
 
 

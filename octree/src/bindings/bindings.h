@@ -61,4 +61,7 @@ void bind_derived(nanobind::module_& m);
 /// Binds the text of .mem files and what joins octrees, in memory and on disk.
 void bind_files(nanobind::module_& m);
 
+/// Binds the octree that is edited.
+void bind_world(nanobind::module_& m);
+
 } // namespace voxrt::octree

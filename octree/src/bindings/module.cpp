@@ -192,4 +192,5 @@ NB_MODULE(_native, m) {
         .def("next", &PythonLeafWalk::next, "limit"_a);
     bind_derived(m);
     bind_files(m);
+    bind_world(m);
 }

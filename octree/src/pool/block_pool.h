@@ -26,7 +26,7 @@ public:
     std::uint64_t prepare(const Block& children) const {
         const std::uint64_t hash = block_hash(children);
 #if defined(__GNUC__)
-        __builtin_prefetch(&slots_[tag_of(hash) & (slots_.size() - 1)]);
+        __builtin_prefetch(&slots_[block_tag(hash) & (slots_.size() - 1)]);
 #endif
         return hash;
     }
@@ -37,13 +37,13 @@ public:
 
     /// The same for a block whose hash is known.
     Node intern(const Block& children, std::uint64_t whole_hash) {
-        if (is_leaf(children[0]) && all_equal(children))
+        if (is_leaf(children[0]) && is_uniform(children))
             return children[0];
-        const Word hash = tag_of(whole_hash);
+        const Word hash = block_tag(whole_hash);
         const std::size_t mask = slots_.size() - 1;
         std::size_t i = hash & mask;
         for (; slots_[i].number != kFree; i = (i + 1) & mask)
-            if (slots_[i].hash == hash && same(blocks_[slots_[i].number], children))
+            if (slots_[i].hash == hash && is_same(blocks_[slots_[i].number], children))
                 return slots_[i].number;
         if (blocks_.size() >= kBlockLimit)
             throw_too_many_blocks();
@@ -64,19 +64,6 @@ private:
         Word number;
     };
     static constexpr Word kFree = ~Word{0};
-
-    static bool all_equal(const Block& children) {
-        const std::uint64_t first = word_pair(children, 0);
-        return ((first ^ word_pair(children, 1)) | (first ^ word_pair(children, 2)) | (first ^ word_pair(children, 3)) |
-                (children[0] ^ children[1])) == 0;
-    }
-
-    static bool same(const Block& a, const Block& b) {
-        return ((word_pair(a, 0) ^ word_pair(b, 0)) | (word_pair(a, 1) ^ word_pair(b, 1)) |
-                (word_pair(a, 2) ^ word_pair(b, 2)) | (word_pair(a, 3) ^ word_pair(b, 3))) == 0;
-    }
-
-    static Word tag_of(std::uint64_t hash) { return static_cast<Word>(hash ^ hash >> 32); }
 
     void grow() {
         std::vector<Slot> old(2 * slots_.size(), Slot{0, kFree});

@@ -110,17 +110,6 @@ private:
     static constexpr std::size_t kMostThreads = 1024;
     static constexpr std::size_t kRuns = (std::size_t{1} << 28) / kRun + kMostThreads;
 
-    static bool is_uniform(const Block& children) {
-        const std::uint64_t first = word_pair(children, 0);
-        return ((first ^ word_pair(children, 1)) | (first ^ word_pair(children, 2)) | (first ^ word_pair(children, 3)) |
-                (children[0] ^ children[1])) == 0;
-    }
-
-    static bool is_same(const Block& a, const Block& b) {
-        return ((word_pair(a, 0) ^ word_pair(b, 0)) | (word_pair(a, 1) ^ word_pair(b, 1)) |
-                (word_pair(a, 2) ^ word_pair(b, 2)) | (word_pair(a, 3) ^ word_pair(b, 3))) == 0;
-    }
-
     struct Table {
         explicit Table(std::size_t size) : slots(size + kWindow), shift(64 - std::bit_width(size - 1)) {}
         ~Table() { delete next.load(std::memory_order_relaxed); }

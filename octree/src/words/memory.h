@@ -10,6 +10,9 @@ namespace voxrt::octree {
 /// The words of a memory that was made.
 using Words = voxelize::LargeVector<Word>;
 
+/// In place of the word of a root: it is word 0 of the memory.
+constexpr std::uint64_t kWord0 = ~std::uint64_t{0};
+
 /// Borrowed words that claim to be an octree of `depth` levels, 1 … kMaxDepth: a world of 2**depth voxels per side.
 ///
 /// Memories are read through root() and child(), which check every address. So words that are no octree end in
@@ -19,9 +22,12 @@ struct Memory {
     const Word* words;
     std::size_t size; // words
     unsigned depth;
+    std::uint64_t root_word = kWord0; // the root; kWord0: word 0
 
-    /// Word 0.
+    /// The word of the whole world.
     Word root() const {
+        if (root_word != kWord0)
+            return static_cast<Word>(root_word);
         if (size == 0)
             throw std::invalid_argument("the octree memory has no words; it needs at least its root");
         return words[0];

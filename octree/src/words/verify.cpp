@@ -16,7 +16,7 @@ namespace {
 
 } // namespace
 
-VerifiedMemory::VerifiedMemory(const Memory& memory) : memory_(memory) {
+VerifiedMemory::VerifiedMemory(const Memory& memory) : memory_(memory), root_(kEmpty) {
     const unsigned depth = memory.depth;
     const std::size_t size = memory.size;
     if (depth < 1 || depth > kMaxDepth)
@@ -24,11 +24,11 @@ VerifiedMemory::VerifiedMemory(const Memory& memory) : memory_(memory) {
     if (!is_memory_size(size) || block_count(size) > kBlockLimit)
         throw std::invalid_argument("an octree memory holds 1 + 8k words, not " + std::to_string(size));
 
+    root_ = memory.root();
     // One level at a time, each block once per level: a cycle shows as a pointer below the last level.
     std::vector<Word> blocks, below;
     std::vector<std::uint8_t> level_seen(block_count(size), 0);
-    const auto follow = [&](std::size_t address, unsigned level) {
-        const Word word = memory.words[address];
+    const auto follow = [&](std::size_t address, Word word, unsigned level) {
         if (is_leaf(word)) {
             if (!is_tagged(word))
                 refuse(address, word, "is neither a pointer nor a material tag");
@@ -46,13 +46,13 @@ VerifiedMemory::VerifiedMemory(const Memory& memory) : memory_(memory) {
             below.push_back(word);
         }
     };
-    follow(0, 0);
+    follow(0, root_, 0);
     for (unsigned level = 1; !below.empty(); ++level) {
         blocks.swap(below);
         below.clear();
         for (const Word block : blocks)
             for (unsigned octant = 0; octant < 8; ++octant)
-                follow(block + octant, level);
+                follow(block + octant, memory.words[block + octant], level);
     }
 }
 

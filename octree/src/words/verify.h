@@ -5,8 +5,8 @@
 
 namespace voxrt::octree {
 
-/// A memory that was verified: every path from word 0 ends in a leaf within `depth` levels, every pointer on a path is
-/// 1 + 8k, and its block lies inside the memory. So a reader that starts at word 0 needs no check. The words are
+/// A memory that was verified: every path from its root ends in a leaf within `depth` levels, every pointer on a path
+/// is 1 + 8k, and its block lies inside the memory. So a reader that starts at the root needs no check. The words are
 /// borrowed: they must neither change nor be freed as long as a copy of this is in use.
 class VerifiedMemory {
 public:
@@ -15,12 +15,20 @@ public:
     /// levels.
     explicit VerifiedMemory(const Memory& memory);
 
+    /// A memory that is so because of how its words were made.
+    static VerifiedMemory trusted(const Memory& memory) { return VerifiedMemory(memory, Trusted()); }
+
     const Memory& memory() const { return memory_; }
     const Word* words() const { return memory_.words; }
+    Word root() const { return root_; }
     unsigned depth() const { return memory_.depth; }
 
 private:
+    struct Trusted {};
+    VerifiedMemory(const Memory& memory, Trusted) : memory_(memory), root_(memory.root()) {}
+
     Memory memory_;
+    Word root_;
 };
 
 } // namespace voxrt::octree

@@ -35,6 +35,19 @@ class ConvertResult(msgspec.Struct, frozen=True):
     warnings: tuple[SceneWarning, ...]
 
 
+class EditResult(msgspec.Struct, frozen=True):
+    """``voxrt edit --json``."""
+
+    outputs: list[str]
+    """Files written, the memory first."""
+    warnings: tuple[SceneWarning, ...]
+    edits: int
+    """Operations of the script."""
+    words_before: int
+    words: int
+    """Those of the memory that was written."""
+
+
 class WorldEntry(msgspec.Struct, frozen=True):
     """Where the voxels stand in the scene."""
 

@@ -179,7 +179,7 @@ void VOXRT_OPEN_RAYS(const octree::VerifiedMemory& memory, const ParallelRays& r
             std::memcpy(&packet.offset[group][axis], values, sizeof values);
         }
     }
-    const uint32_t root = packet.words[0];
+    const uint32_t root = memory.root();
     if (!octree::is_leaf(root) || octree::material(root) != 0)
         packet.beam(root, 0, 0, 0, side);
     std::copy_n(packet.alive, packet.groups, open);

@@ -4,6 +4,7 @@
 #include "../rays/ray.h"
 #include "../views/fit_views.h"
 #include "../views/similarity.h"
+#include "pick_bindings.h"
 #include "views_bindings.h"
 
 #include <voxrt/voxelize/bindings/python.h>
@@ -386,6 +387,7 @@ NB_MODULE(_model, m) {
     m.def("choose_fit", &chosen_fit, nb::arg("fits"),
           "The index of the fit whose worst figure is the best: (surface voxels changed, psnr, ssim) each.");
     bind_views(m);
+    bind_pick(m);
     m.def("peak_signal_to_noise", &signal_to_noise, nb::arg("picture"), nb::arg("other"), "similarity.h");
     m.def("structural_similarity", &similarity, nb::arg("picture"), nb::arg("other"), "similarity.h");
 }

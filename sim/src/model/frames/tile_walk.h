@@ -130,9 +130,8 @@ struct Walk {
             block(word, 0, 0, 0, side, rays, count);
     }
 
-    // Traces the rays that are mirrored as `mirror` says.
-    void root(double side) {
-        const uint32_t word = words[0];
+    // Traces the rays that are mirrored as `mirror` says; `word` is the root.
+    void root(uint32_t word, double side) {
         words_read += 1;
         if (octree::is_leaf(word) && octree::material(word) == 0)
             return;
@@ -180,7 +179,7 @@ inline uint64_t trace_tile(const FrameJob& job, Tile& tile) {
                 const int64_t position = job.camera.position[axis];
                 walk.origin[axis] = ((mirror >> axis & 1 ? 16 * side - position : position) + 15) >> 4;
             }
-            walk.root(static_cast<double>(side));
+            walk.root(job.memory.root(), static_cast<double>(side));
             words_read += walk.words_read;
         }
     return words_read;

@@ -71,7 +71,7 @@ template <class Key> struct Reading {
 template <class Key> class Ray {
 public:
     Ray(const octree::VerifiedMemory& memory, const Line& line)
-        : words_(memory.words()), depth_(static_cast<int>(memory.depth())), unit_(line.unit), side_(1 << depth_) {
+        : words_(memory.words()), root_(memory.root()), depth_(static_cast<int>(memory.depth())), unit_(line.unit), side_(1 << depth_) {
         for (int axis = 0; axis < 3; ++axis) {
             const int64_t d = line.direction[axis];
             alive_[axis] = d != 0;
@@ -148,6 +148,7 @@ private:
     }
 
     const octree::Word* words_;
+    octree::Word root_;
     int depth_;
     int32_t unit_;
     int32_t side_;
@@ -178,7 +179,7 @@ template <class Key> template <class Read> Hit<Key> Ray<Key>::trace(Read&& read)
     int32_t corner[3] = {0, 0, 0};            // lowest cell of the current node, mirrored frame
     int level = depth_;                       // the node is 2^level voxels per side
     uint32_t block_at[octree::kMaxDepth + 1]; // block whose octants are 2^level a side
-    uint32_t word = words_[0];
+    uint32_t word = root_;
     uint32_t words_read = 0;
     const auto read_octant = [&](uint32_t octant) {
         const uint32_t address = block_at[level] + (octant ^ mirror_);

@@ -1,0 +1,29 @@
+// A World for Python, whose threads take turns.
+#pragma once
+
+#include "../edit/world.h"
+
+#include <mutex>
+
+namespace voxrt::octree {
+
+class PythonWorld {
+public:
+    PythonWorld(const Memory& memory, const WorldLimits& limits) : world_(memory, limits) {}
+
+    /// Calls `work` with the world. The caller has released the GIL.
+    template <typename Work> auto with(Work work) {
+        const std::lock_guard lock(turn_);
+        return work(world_);
+    }
+
+    /// World::view() and World::release(), which need no turn.
+    View view(std::size_t root) const { return world_.view(root); }
+    void release(std::size_t root) { world_.release(root); }
+
+private:
+    World world_;
+    std::mutex turn_;
+};
+
+} // namespace voxrt::octree

@@ -1,0 +1,172 @@
+#include "counted_blocks.h"
+
+#include <voxrt/voxelize/work/interrupt.h>
+
+#include <algorithm>
+
+namespace voxrt::octree {
+
+bool CountedBlocks::load(const Memory& memory) {
+    const std::size_t blocks = block_count(memory.size);
+    counts_.clear();
+    free_.clear();
+    slots_.clear();
+    filled_ = 0;
+    reserve(std::max<std::size_t>(blocks, 64));
+    std::copy_n(memory.words, memory.size, words_.get());
+    counts_.assign(blocks, 0);
+    written_.assign(blocks, 1);
+    do
+        grow_table();
+    while (slots_.size() < 2 * blocks);
+    const Word root = memory.root();
+    retain(root);
+    std::vector<Word> open;
+    if (!is_leaf(root))
+        open.push_back(root);
+    voxelize::WorkCounter& work = voxelize::WorkCounter::current();
+    while (!open.empty()) {
+        work.count_step();
+        const Word word = open.back();
+        open.pop_back();
+        const Block below = children(word);
+        const Word tag = block_tag(block_hash(below));
+        const std::size_t slot = find(below, tag);
+        if (slots_[slot].number != kFree || (is_leaf(below[0]) && is_uniform(below)))
+            return false;
+        slots_[slot] = {tag, static_cast<Word>(block_number(word))};
+        ++filled_;
+        for (const Word child : below)
+            if (!is_leaf(child) && counts_[block_number(child)]++ == 0)
+                open.push_back(child);
+    }
+    for (std::size_t number = blocks; number-- > 0;)
+        if (counts_[number] == 0) {
+            counts_[number] = kFree;
+            free_.push_back(static_cast<Word>(number));
+        }
+    return true;
+}
+
+Word CountedBlocks::intern(const Block& children) {
+    if (is_leaf(children[0]) && is_uniform(children))
+        return children[0];
+    const Word tag = block_tag(block_hash(children));
+    const std::size_t slot = find(children, tag);
+    if (slots_[slot].number != kFree)
+        return static_cast<Word>(block_address(slots_[slot].number));
+    const Word number = take_number();
+    const std::size_t address = block_address(number);
+    std::memcpy(&words_[address], children.data(), sizeof children);
+    counts_[number] = 0;
+    fresh_.push_back(number);
+    for (const Word child : children)
+        retain(child);
+    slots_[slot] = {tag, number};
+    if (2 * ++filled_ > slots_.size())
+        grow_table();
+    return static_cast<Word>(address);
+}
+
+std::size_t CountedBlocks::add_table() {
+    const Word number = take_number();
+    counts_[number] = 1;
+    const std::size_t address = block_address(number);
+    std::fill_n(&words_[address], 8, kEmpty);
+    return address;
+}
+
+void CountedBlocks::settle() noexcept {
+    while (!fresh_.empty()) {
+        const Word number = fresh_.back();
+        fresh_.pop_back();
+        if (counts_[number] == 0)
+            free(number);
+    }
+}
+
+void CountedBlocks::shrink_to_limit() {
+    if (counts_.size() <= limit_)
+        return;
+    std::erase_if(free_, [this](Word number) { return number >= limit_; });
+    counts_.resize(limit_);
+    written_.resize(limit_);
+}
+
+// A free block, the last that was freed, or a new one at the end. Changes nothing where it throws.
+Word CountedBlocks::take_number() {
+    if (!free_.empty()) {
+        const Word number = free_.back();
+        free_.pop_back();
+        written_[number] = 0;
+        return number;
+    }
+    if (counts_.size() >= limit_)
+        throw NoRoom();
+    if (counts_.size() == capacity_)
+        reserve(2 * capacity_);
+    counts_.push_back(0); // none of these throws: reserve() made room
+    written_.push_back(0);
+    return static_cast<Word>(counts_.size() - 1);
+}
+
+void CountedBlocks::reserve(std::size_t blocks) {
+    blocks = std::min(blocks, kBlockLimit);
+    counts_.reserve(blocks);
+    written_.reserve(blocks);
+    free_.reserve(blocks); // so that free() does not throw
+    fresh_.reserve(blocks);
+    std::shared_ptr<Word[]> larger(new Word[memory_size(blocks)]);
+    std::copy_n(words_.get(), memory_size(counts_.size()), larger.get());
+    const std::lock_guard lock(moving_);
+    words_.swap(larger);
+    capacity_ = blocks;
+}
+
+// The slot of a block, or the free one that it would get.
+std::size_t CountedBlocks::find(const Block& children, Word tag) const {
+    const std::size_t mask = slots_.size() - 1;
+    std::size_t i = tag & mask;
+    for (; slots_[i].number != kFree; i = (i + 1) & mask)
+        if (slots_[i].tag == tag &&
+            std::memcmp(&words_[block_address(slots_[i].number)], children.data(), sizeof children) == 0)
+            break;
+    return i;
+}
+
+void CountedBlocks::grow_table() {
+    std::vector<Slot> old(std::max<std::size_t>(1024, 2 * slots_.size()), Slot{0, kFree});
+    old.swap(slots_);
+    const std::size_t mask = slots_.size() - 1;
+    for (const Slot& slot : old) {
+        if (slot.number == kFree)
+            continue;
+        std::size_t i = slot.tag & mask;
+        while (slots_[i].number != kFree)
+            i = (i + 1) & mask;
+        slots_[i] = slot;
+    }
+}
+
+// The slots behind the one that becomes free move up, as far as their blocks' own places allow: Knuth, "The Art of
+// Computer Programming", volume 3, 6.4, algorithm R.
+void CountedBlocks::free(Word number) noexcept {
+    const Block below = children(static_cast<Word>(block_address(number)));
+    const std::size_t mask = slots_.size() - 1;
+    std::size_t hole = block_tag(block_hash(below)) & mask;
+    while (slots_[hole].number != number)
+        hole = (hole + 1) & mask;
+    for (std::size_t i = (hole + 1) & mask; slots_[i].number != kFree; i = (i + 1) & mask)
+        if (((i - slots_[i].tag) & mask) >= ((i - hole) & mask)) {
+            slots_[hole] = slots_[i];
+            hole = i;
+        }
+    slots_[hole].number = kFree;
+    --filled_;
+    counts_[number] = kFree;
+    free_.push_back(number);
+    for (const Word child : below)
+        release(child);
+}
+
+} // namespace voxrt::octree
