@@ -12,8 +12,8 @@ bool CountedBlocks::load(const Memory& memory) {
     free_.clear();
     slots_.clear();
     filled_ = 0;
-    reserve(std::max<std::size_t>(blocks, 64));
-    std::copy_n(memory.words, memory.size, words_.get());
+    reserve(blocks + blocks / 8 + 64); // the first edits need not move all
+    std::copy_n(memory.words, memory.size, words_->data());
     counts_.assign(blocks, 0);
     written_.assign(blocks, 1);
     do
@@ -57,7 +57,7 @@ Word CountedBlocks::intern(const Block& children) {
         return static_cast<Word>(block_address(slots_[slot].number));
     const Word number = take_number();
     const std::size_t address = block_address(number);
-    std::memcpy(&words_[address], children.data(), sizeof children);
+    std::memcpy(&(*words_)[address], children.data(), sizeof children);
     counts_[number] = 0;
     fresh_.push_back(number);
     for (const Word child : children)
@@ -72,7 +72,7 @@ std::size_t CountedBlocks::add_table() {
     const Word number = take_number();
     counts_[number] = 1;
     const std::size_t address = block_address(number);
-    std::fill_n(&words_[address], 8, kEmpty);
+    std::fill_n(&(*words_)[address], 8, kEmpty);
     return address;
 }
 
@@ -103,8 +103,8 @@ Word CountedBlocks::take_number() {
     }
     if (counts_.size() >= limit_)
         throw NoRoom();
-    if (counts_.size() == capacity_)
-        reserve(2 * capacity_);
+    if (memory_size(counts_.size()) == words_->size())
+        reserve(2 * counts_.size());
     counts_.push_back(0); // none of these throws: reserve() made room
     written_.push_back(0);
     return static_cast<Word>(counts_.size() - 1);
@@ -116,11 +116,10 @@ void CountedBlocks::reserve(std::size_t blocks) {
     written_.reserve(blocks);
     free_.reserve(blocks); // so that free() does not throw
     fresh_.reserve(blocks);
-    std::shared_ptr<Word[]> larger(new Word[memory_size(blocks)]);
-    std::copy_n(words_.get(), memory_size(counts_.size()), larger.get());
+    auto larger = std::make_shared<Words>(memory_size(blocks));
+    std::copy_n(words_->data(), memory_size(counts_.size()), larger->data());
     const std::lock_guard lock(moving_);
     words_.swap(larger);
-    capacity_ = blocks;
 }
 
 // The slot of a block, or the free one that it would get.
@@ -129,7 +128,7 @@ std::size_t CountedBlocks::find(const Block& children, Word tag) const {
     std::size_t i = tag & mask;
     for (; slots_[i].number != kFree; i = (i + 1) & mask)
         if (slots_[i].tag == tag &&
-            std::memcmp(&words_[block_address(slots_[i].number)], children.data(), sizeof children) == 0)
+            std::memcmp(&(*words_)[block_address(slots_[i].number)], children.data(), sizeof children) == 0)
             break;
     return i;
 }

@@ -37,7 +37,7 @@ public:
 
     /// A block that is never found by its children: its words are written by set_word(). Counted once.
     std::size_t add_table();
-    void set_word(std::size_t address, Word word) { words_[address] = word; }
+    void set_word(std::size_t address, Word word) { (*words_)[address] = word; }
 
     /// The children of an octant.
     Block children(Word word) const {
@@ -45,7 +45,7 @@ public:
         if (is_leaf(word))
             found.fill(word);
         else
-            std::memcpy(found.data(), &words_[word], sizeof found);
+            std::memcpy(found.data(), &(*words_)[word], sizeof found);
         return found;
     }
 
@@ -76,12 +76,12 @@ public:
     /// The words, and room for more; the next new block may move them, and the pointer keeps those that stand here.
     /// Callable from any thread.
     struct Stored {
-        std::shared_ptr<const Word[]> words;
-        std::size_t size;
+        std::shared_ptr<const Words> words;
+        Memory memory(unsigned depth, Word root) const { return {words->data(), words->size(), depth, root}; }
     };
     Stored stored() const {
         const std::lock_guard lock(moving_);
-        return {words_, memory_size(capacity_)};
+        return {words_};
     }
 
 private:
@@ -98,8 +98,7 @@ private:
     void grow_table();
     void free(Word number) noexcept;
 
-    std::shared_ptr<Word[]> words_{new Word[1]{kEmpty}};
-    std::size_t capacity_ = 0; // blocks
+    std::shared_ptr<Words> words_ = std::make_shared<Words>(1, kEmpty); // with room for more
     std::size_t limit_ = kBlockLimit;
     std::vector<std::uint32_t> counts_; // by block
     std::vector<std::uint8_t> written_; // by block

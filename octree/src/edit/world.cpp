@@ -115,21 +115,18 @@ bool World::redo() {
     return true;
 }
 
-VerifiedMemory World::memory() const {
-    const CountedBlocks::Stored stored = blocks_.stored();
-    return VerifiedMemory::trusted({stored.words.get(), memory_size(blocks_.size()), depth_, root_});
-}
+VerifiedMemory World::memory() const { return VerifiedMemory::trusted(blocks_.stored().memory(depth_, root_)); }
 
 Words World::words() const {
     BlockPool pool(blocks_.used());
-    const VerifiedMemory all = memory();
-    JoiningPart<BlockPool> whole(pool, all.memory());
+    const Memory all{blocks_.stored().words->data(), memory_size(blocks_.size()), depth_, root_};
+    JoiningPart<BlockPool> whole(pool, all);
     return breadth_first_words(pool, whole.join(kEmpty, root_, depth_));
 }
 
 Words World::image() const {
-    const CountedBlocks::Stored stored = blocks_.stored();
-    return Words(stored.words.get(), stored.words.get() + memory_size(blocks_.size()));
+    const Word* words = blocks_.stored().words->data();
+    return Words(words, words + memory_size(blocks_.size()));
 }
 
 std::optional<Patch> World::commit() {

@@ -45,9 +45,7 @@ public:
     View& operator=(const View&) = delete;
 
     /// Its words, as long as the view lives.
-    VerifiedMemory memory() const {
-        return VerifiedMemory::trusted({stored_.words.get(), stored_.size, depth_, root_});
-    }
+    VerifiedMemory memory() const { return VerifiedMemory::trusted(stored_.memory(depth_, root_)); }
 
 private:
     std::shared_ptr<LiveRoots> roots_;
