@@ -207,8 +207,9 @@ $(eval $(call program,query_octree,examples/cpp/query_octree.cpp,octree voxelize
 # The same libraries with calls at every branch, which tell the fuzzer where an input leads. What it finds and keeps is
 # in build/fuzz/native/PROGRAM.
 RUNS := 1000000
-fuzz: build/fuzz/native/voxelize-fuzzer build/fuzz/native/octree-fuzzer
-	for program in voxelize octree; do build/fuzz/native/$$program-fuzzer $(RUNS) build/fuzz/native/$$program || exit 1; done
+FUZZERS := voxelize octree edit
+fuzz: $(FUZZERS:%=build/fuzz/native/%-fuzzer)
+	for program in $(FUZZERS); do build/fuzz/native/$$program-fuzzer $(RUNS) build/fuzz/native/$$program || exit 1; done
 
 covered = $(CXX) -std=c++20 -O2 -g -fno-sanitize-recover=all -fsanitize=address,$(UNDEFINED) -I$(CURDIR)/build/sanitize/include
 COVERED := $(patsubst %.cpp,build/fuzz/native/objects/%.o,$(call sources,voxelize) $(call sources,octree))

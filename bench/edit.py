@@ -180,9 +180,9 @@ def main() -> None:
     heads = ("scene", "words", "load", "edits per second", "with a patch each", "blocks per patch", "garbage", "pick")
     page = (
         f"# Edits\n\n{options.edits:,} single voxels of the surface are dug from Python, one per call, on one thread "
-        f"({machine()}; times are those of the processor). Garbage: blocks that the current octree does not use, beside those that it uses, when each "
-        "edit was sent as a patch and the root before it was released. Pick: from Python, and its C++ alone. `rom`: "
-        "the memory of the result. Rebuild: `from_points` of all its voxels.\n\n"
+        f"({machine()}; times are those of the processor). Garbage: blocks that the current octree does not use, "
+        "beside those that it uses, when each edit was sent as a patch and the root before it was released. Pick: from "
+        "Python, and its C++ alone. `rom`: the memory of the result. Rebuild: `from_points` of all its voxels.\n\n"
         f"{table((*heads, 'rom', 'rebuild'), singles, 1)}\n"
         f"Shapes at {SHAPES} places of the surface, median and worst, ms. Spheres have a radius of {RADIUS} voxels, "
         f"those that paint of {2 * RADIUS}; the copy has {2 * RADIUS} voxels per side and is turned.\n\n"
