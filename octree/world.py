@@ -37,7 +37,8 @@ class World:
     Parameters
     ----------
     rom
-        The memory to begin with. Mean materials for level of detail are made anew by :meth:`rom`.
+        The memory to begin with. Mean materials for level of detail are made anew by :meth:`rom`. Of an animation, the
+        first frame is edited; the others stay as they are in :attr:`image`.
     words
         The most words that the memory may have: its octree, and whatever is kept for undo and for live roots. None:
         as many as addresses reach.

@@ -203,6 +203,25 @@ def test_a_memory_that_does_not_share_is_shared_first():
     np.testing.assert_array_equal(world.rom().octree.words, reference_words(cube))
 
 
+def test_other_frames_of_an_animation_stay():
+    rng = np.random.default_rng(8)
+    cubes = [rng.integers(0, 2, (8, 8, 8)).astype(np.uint8) for _ in range(5)]
+    cubes[3][:4] = cubes[0][:4]
+    memory, roots = octree.join_frames([octree.from_dense(cube) for cube in cubes])
+    world = world_of(memory)
+    device = memory.words
+    np.testing.assert_array_equal(world.image, device)
+    for _ in range(20):
+        older = world.live_roots[-1]
+        world.fill(random_shape(rng, 8), int(rng.integers(0, 3)))
+        device = world.commit().apply(device)
+        if older != world.live_roots[-1]:
+            world.release(older)
+        world._native.check()
+    for root, cube in zip(roots, cubes, strict=True):
+        np.testing.assert_array_equal(octree.to_dense(octree.frame_octree(Octree(3, device), root)), cube)
+
+
 def test_an_edit_without_room_changes_nothing():
     rng = np.random.default_rng(3)
     cube = np.zeros((16, 16, 16), np.uint8)

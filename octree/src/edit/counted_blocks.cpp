@@ -19,32 +19,47 @@ bool CountedBlocks::load(const Memory& memory) {
     do
         grow_table();
     while (slots_.size() < 2 * blocks);
-    const Word root = memory.root();
-    retain(root);
+    kept_.clear();
+    retain(memory.root());
+    if (!take_over(memory.root()))
+        return false;
+    for (std::size_t number = 0; number < blocks; ++number)
+        if (counts_[number] == 0) {
+            kept_.push_back(static_cast<Word>(block_address(number)));
+            retain(kept_.back());
+            if (!take_over(kept_.back()))
+                return false;
+        }
+    return true;
+}
+
+// Enters the blocks below a word whose block was counted for the first time. False where one is not canonical, or is no
+// block: those that the root reaches are verified, others are not.
+bool CountedBlocks::take_over(Word word) {
     std::vector<Word> open;
-    if (!is_leaf(root))
-        open.push_back(root);
+    if (!is_leaf(word))
+        open.push_back(word);
     voxelize::WorkCounter& work = voxelize::WorkCounter::current();
     while (!open.empty()) {
         work.count_step();
-        const Word word = open.back();
+        const Word block = open.back();
         open.pop_back();
-        const Block below = children(word);
+        const Block below = children(block);
         const Word tag = block_tag(block_hash(below));
         const std::size_t slot = find(below, tag);
         if (slots_[slot].number != kFree || (is_leaf(below[0]) && is_uniform(below)))
             return false;
-        slots_[slot] = {tag, static_cast<Word>(block_number(word))};
+        slots_[slot] = {tag, static_cast<Word>(block_number(block))};
         ++filled_;
-        for (const Word child : below)
-            if (!is_leaf(child) && counts_[block_number(child)]++ == 0)
+        for (const Word child : below) {
+            if (is_leaf(child))
+                continue;
+            if (!is_block_address(child) || block_number(child) >= counts_.size())
+                return false;
+            if (counts_[block_number(child)]++ == 0)
                 open.push_back(child);
-    }
-    for (std::size_t number = blocks; number-- > 0;)
-        if (counts_[number] == 0) {
-            counts_[number] = kFree;
-            free_.push_back(static_cast<Word>(number));
         }
+    }
     return true;
 }
 

@@ -23,9 +23,9 @@ struct NoRoom {};
 
 class CountedBlocks {
 public:
-    /// Takes over the blocks of `memory` that its root reaches, each at its address; the others are free. Its root is
-    /// counted once. The memory is verified and canonical: equal blocks are one, and no block is uniform. False where
-    /// it is not canonical: then load another.
+    /// Takes over the blocks of `memory`, each at its address. Its root is counted once. So are blocks that the root
+    /// does not reach, for good: other roots may reach them, as those of an animation. The memory is verified. False
+    /// where it is not canonical, since blocks are equal or uniform: then load another.
     bool load(const Memory& memory);
 
     /// The most blocks from now on.
@@ -71,6 +71,7 @@ public:
     /// Blocks of the memory, free ones among them; those that are counted.
     std::size_t size() const { return counts_.size(); }
     std::size_t used() const { return counts_.size() - free_.size(); }
+    const std::vector<Word>& kept() const { return kept_; } // blocks that load() counted besides the root
     std::uint32_t count(std::size_t number) const { return counts_[number]; }
 
     /// The words, and room for more; the next new block may move them, and the pointer keeps those that stand here.
@@ -91,6 +92,7 @@ private:
     };
     static constexpr Word kFree = ~Word{0}; // the number in a free slot; the count of a free block
 
+    bool take_over(Word word);
     void reserve(std::size_t blocks);
     Word take_number();
     std::size_t find(const Block& children, Word tag) const;
@@ -102,6 +104,7 @@ private:
     std::size_t limit_ = kBlockLimit;
     std::vector<std::uint32_t> counts_; // by block
     std::vector<std::uint8_t> written_; // by block
+    std::vector<Word> kept_;            // by load()
     std::vector<Word> free_;            // numbers; the last is used next
     std::vector<Word> fresh_;           // numbers, in the order in which they were made
     std::vector<Slot> slots_;           // a hash table with linear probing; half of it is free

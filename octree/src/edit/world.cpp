@@ -289,7 +289,8 @@ std::vector<std::uint8_t> World::reached(const std::vector<Word>& roots) const {
 }
 
 std::vector<Word> World::needed_roots() const {
-    std::vector<Word> words{root_};
+    std::vector<Word> words = blocks_.kept();
+    words.push_back(root_);
     for (const LiveRoots::Root& root : roots_->roots(true))
         words.push_back(root.word);
     return words;

@@ -63,8 +63,9 @@ struct WorldLimits {
 class World {
 public:
     /// Takes over `memory`. Its blocks keep their addresses where it is canonical, and word 0 is its live root; else
-    /// equal blocks are shared first, and image() is the memory to begin with. Throws std::invalid_argument as
-    /// VerifiedMemory does, std::length_error where it is larger than the limit.
+    /// equal blocks are shared first, and image() is the memory to begin with. Blocks of other roots stay as they are,
+    /// where the memory is canonical. Throws std::invalid_argument as VerifiedMemory does, std::length_error where it
+    /// is larger than the limit.
     explicit World(const Memory& memory, const WorldLimits& limits = {});
 
     unsigned depth() const { return depth_; }
