@@ -13,7 +13,7 @@ from voxrt.cli.results.memory_results import EditResult
 from voxrt.cli.terminal.errors import UsageError
 from voxrt.cli.terminal.messages import name_file, summarize
 from voxrt.export import Provenance
-from voxrt.outputs import check_folder
+from voxrt.export.outputs import check_folder
 
 if TYPE_CHECKING:
     from voxrt.options.memory_commands import EditCommand

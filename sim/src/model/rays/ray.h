@@ -71,7 +71,8 @@ template <class Key> struct Reading {
 template <class Key> class Ray {
 public:
     Ray(const octree::VerifiedMemory& memory, const Line& line)
-        : words_(memory.words()), root_(memory.root()), depth_(static_cast<int>(memory.depth())), unit_(line.unit), side_(1 << depth_) {
+        : words_(memory.words()), root_(memory.root()), depth_(static_cast<int>(memory.depth())), unit_(line.unit),
+          side_(1 << depth_) {
         for (int axis = 0; axis < 3; ++axis) {
             const int64_t d = line.direction[axis];
             alive_[axis] = d != 0;
