@@ -42,6 +42,7 @@ TASKS = {
     "Read, write and convert memories": (
         "read_rom", "read_any", "rom_info", "convert", "WRITABLE_SUFFIXES", "Rom", "Octree",
     ),
+    "Edit a memory": ("World", "Box", "Sphere", "Capsule", "Patch", "pick", "run_edit_script"),
     "Make pictures": (
         "render", "RenderOptions", "Frame", "Picture", "save_picture", "aim_camera", "Camera", "Lighting",
     ),
