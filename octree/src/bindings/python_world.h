@@ -3,7 +3,7 @@
 
 #include "../edit/world.h"
 
-#include <mutex>
+#include <voxrt/voxelize/work/mutex.h>
 
 namespace voxrt::octree {
 
@@ -13,7 +13,7 @@ public:
 
     /// Calls `work` with the world. The caller has released the GIL.
     template <typename Work> auto with(Work work) {
-        const std::lock_guard lock(turn_);
+        const voxelize::Lock lock(turn_);
         return work(world_);
     }
 
@@ -23,7 +23,7 @@ public:
 
 private:
     World world_;
-    std::mutex turn_;
+    voxelize::Mutex turn_;
 };
 
 } // namespace voxrt::octree

@@ -133,7 +133,7 @@ void CountedBlocks::reserve(std::size_t blocks) {
     fresh_.reserve(blocks);
     auto larger = std::make_shared<Words>(memory_size(blocks));
     std::copy_n(words_->data(), memory_size(counts_.size()), larger->data());
-    const std::lock_guard lock(moving_);
+    const voxelize::Lock lock(moving_);
     words_.swap(larger);
 }
 

@@ -12,8 +12,9 @@
 #include "../pool/block_hash.h"
 #include "../words/memory.h"
 
+#include <voxrt/voxelize/work/mutex.h>
+
 #include <memory>
-#include <mutex>
 #include <vector>
 
 namespace voxrt::octree {
@@ -81,7 +82,7 @@ public:
         Memory memory(unsigned depth, Word root) const { return {words->data(), words->size(), depth, root}; }
     };
     Stored stored() const {
-        const std::lock_guard lock(moving_);
+        const voxelize::Lock lock(moving_);
         return {words_};
     }
 
@@ -109,7 +110,7 @@ private:
     std::vector<Word> fresh_;           // numbers, in the order in which they were made
     std::vector<Slot> slots_;           // a hash table with linear probing; half of it is free
     std::size_t filled_ = 0;            // slots
-    mutable std::mutex moving_;         // held where words_ is replaced
+    mutable voxelize::Mutex moving_;    // held where words_ is replaced
 };
 
 } // namespace voxrt::octree

@@ -7,7 +7,7 @@
 namespace voxrt::octree {
 
 void LiveRoots::release(std::size_t address) {
-    const std::lock_guard lock(mutex_);
+    const voxelize::Lock lock(mutex_);
     const auto entry = find(address);
     if (entry + 1 == entries_.end())
         throw std::invalid_argument("the root at word " + std::to_string(address) +
@@ -17,14 +17,14 @@ void LiveRoots::release(std::size_t address) {
 }
 
 Word LiveRoots::begin_view(std::size_t address) {
-    const std::lock_guard lock(mutex_);
+    const voxelize::Lock lock(mutex_);
     const auto entry = find(address);
     ++entry->views;
     return entry->root.word;
 }
 
 void LiveRoots::end_view(std::size_t address) noexcept {
-    const std::lock_guard lock(mutex_);
+    const voxelize::Lock lock(mutex_);
     const auto entry =
         std::find_if(entries_.begin(), entries_.end(), [&](const Entry& one) { return one.root.address == address; });
     --entry->views;

@@ -3,9 +3,10 @@
 
 #include "../words/words.h"
 
+#include <voxrt/voxelize/work/mutex.h>
+
 #include <cstddef>
 #include <cstdint>
-#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -21,20 +22,20 @@ public:
     };
 
     void add(const Root& root) {
-        const std::lock_guard lock(mutex_);
+        const voxelize::Lock lock(mutex_);
         ended_.reserve(ended_.size() + entries_.size() + 1); // so that end_view() does not throw
         entries_.push_back({root, 0, false});
     }
 
     /// The root that was committed last.
     Root newest() const {
-        const std::lock_guard lock(mutex_);
+        const voxelize::Lock lock(mutex_);
         return entries_.back().root;
     }
 
     /// In the order of their commits; `all`: with those that are released and that views still read.
     std::vector<Root> roots(bool all) const {
-        const std::lock_guard lock(mutex_);
+        const voxelize::Lock lock(mutex_);
         std::vector<Root> found;
         for (const Entry& entry : entries_)
             if (all || !entry.released)
@@ -51,7 +52,7 @@ public:
 
     /// The roots that are no longer live since the last call.
     std::vector<Root> take_ended() {
-        const std::lock_guard lock(mutex_);
+        const voxelize::Lock lock(mutex_);
         return std::exchange(ended_, {});
     }
 
@@ -65,7 +66,7 @@ private:
     std::vector<Entry>::iterator find(std::size_t address);
     void end_unused(std::vector<Entry>::iterator entry);
 
-    mutable std::mutex mutex_;
+    mutable voxelize::Mutex mutex_;
     std::vector<Entry> entries_; // in the order of their commits
     std::vector<Root> ended_;
 };
