@@ -218,16 +218,21 @@ World::Figures World::figures() {
     return {blocks, blocks_.used() - blocks, blocks_.size() - blocks_.used()};
 }
 
-// Frees the blocks of a failed edit, and gives the limit back.
-template <typename Edit> std::optional<Word> World::fitting(Edit edit) {
+// None where there is no room: then nothing is left of the edit.
+template <typename Edit> std::optional<Word> World::attempt(Edit edit) {
     try {
         return edit();
     } catch (const NoRoom&) {
         blocks_.settle();
-    }
-    if (undo_.empty() && redo_.empty())
         return std::nullopt;
-    // The result, beyond the limit, says whether it would fit without the steps of undo.
+    }
+}
+
+// The edit, with the room of the steps of undo where it fits without them.
+template <typename Edit> std::optional<Word> World::fitting(Edit edit) {
+    const std::optional<Word> root = attempt(edit);
+    if (root || (undo_.empty() && redo_.empty()))
+        return root;
     bool fits = false;
     {
         struct Unlimited {
@@ -240,18 +245,18 @@ template <typename Edit> std::optional<Word> World::fitting(Edit edit) {
             }
         } unlimited{*this};
         blocks_.set_limit(kBlockLimit);
-        try {
+        if (const std::optional<Word> beyond = attempt(edit)) {
             std::vector<Word> roots = needed_roots();
-            roots.push_back(edit());
+            roots.push_back(*beyond);
             const std::vector<std::uint8_t> needed = reached(roots);
             fits = std::accumulate(needed.begin(), needed.end(), tables_.size()) <= unlimited.limit;
-        } catch (const NoRoom&) {
         }
     }
     if (!fits)
         return std::nullopt;
     forget_steps();
-    return edit();
+    free_ended(); // those that ended before they were counted above
+    return attempt(edit);
 }
 
 template <typename Edit> bool World::change(Edit edit) {

@@ -127,6 +127,7 @@ public:
 
 private:
     template <typename Edit> bool change(Edit edit);
+    template <typename Edit> std::optional<Word> attempt(Edit edit);
     template <typename Edit> std::optional<Word> fitting(Edit edit);
     std::vector<std::uint8_t> reached(const std::vector<Word>& roots) const;
     std::vector<Word> needed_roots() const;

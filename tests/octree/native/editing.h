@@ -47,6 +47,8 @@ public:
     }
 
     void step() {
+        const std::size_t steps = world_->undo_steps();
+        refused_ = false;
         switch (choose_(8)) {
         case 0:
         case 1:
@@ -73,6 +75,8 @@ public:
             commit();
         }
         world_->check();
+        if (refused_ && world_->undo_steps() != steps)
+            fail_("an edit that was refused has forgotten steps of undo");
         if (world_->words() != words_of(cells_, depth_))
             fail_("the words are not those of a build");
     }
@@ -104,7 +108,8 @@ private:
             const std::int64_t* point = points.data() + points.size() - 3;
             edited[static_cast<std::size_t>((point[0] * side_ + point[1]) * side_ + point[2])] = materials.back();
         }
-        if (world_->set(points.data(), materials.data(), materials.size()))
+        refused_ = !world_->set(points.data(), materials.data(), materials.size());
+        if (!refused_)
             cells_ = edited;
     }
 
@@ -116,7 +121,8 @@ private:
             shape = Ball{place(), any(0, 8 * side_)};
         else if (choose_(2) == 0)
             shape = Capsule{place(), place(), any(0, 4 * side_)};
-        if (!(solid_only ? world_->paint(shape, material) : world_->fill(shape, material)))
+        refused_ = !(solid_only ? world_->paint(shape, material) : world_->fill(shape, material));
+        if (refused_)
             return;
         for (std::int64_t x = 0; x < side_; ++x)
             for (std::int64_t y = 0; y < side_; ++y)
@@ -135,7 +141,9 @@ private:
         for (unsigned id = 0; id < 256; ++id)
             materials[id] = static_cast<std::uint8_t>(id == 2 ? 3 : id);
         const auto quarters = static_cast<unsigned>(choose_(4));
-        if (!world_->paste({copied.words.data(), copied.words.size(), copied.depth}, size, at, quarters, materials))
+        refused_ =
+            !world_->paste({copied.words.data(), copied.words.size(), copied.depth}, size, at, quarters, materials);
+        if (refused_)
             return;
         const Cells before = cells_;
         for (std::int64_t x = 0; x < size[0]; ++x)
@@ -202,6 +210,7 @@ private:
     std::map<std::size_t, Cells> live_;
     std::vector<std::thread> readers_;
     std::atomic<bool> wrong_{false};
+    bool refused_ = false;
 };
 
 } // namespace editing
