@@ -33,13 +33,16 @@ public:
         return entries_.back().root;
     }
 
-    /// In the order of their commits; `all`: with those that are released and that views still read.
+    /// In the order of their commits. `all`: with those that are released and that views still read, and those that
+    /// take_ended() would return.
     std::vector<Root> roots(bool all) const {
         const voxelize::Lock lock(mutex_);
         std::vector<Root> found;
         for (const Entry& entry : entries_)
             if (all || !entry.released)
                 found.push_back(entry.root);
+        if (all)
+            found.insert(found.end(), ended_.begin(), ended_.end());
         return found;
     }
 

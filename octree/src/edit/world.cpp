@@ -255,7 +255,6 @@ template <typename Edit> std::optional<Word> World::fitting(Edit edit) {
     if (!fits)
         return std::nullopt;
     forget_steps();
-    free_ended(); // those that ended before they were counted above
     return attempt(edit);
 }
 

@@ -189,7 +189,16 @@ int main(int count, char** arguments) {
     std::signal(SIGPROF, too_slow);
     std::signal(SIGINT, stop);
     std::signal(SIGTERM, stop);
-    std::set_terminate([] { fuzz_fail("an exception that nobody caught"); });
+    std::set_terminate([] {
+        try {
+            if (const std::exception_ptr error = std::current_exception())
+                std::rethrow_exception(error);
+        } catch (const std::exception& error) {
+            fuzz_fail(error.what());
+        } catch (...) {
+        }
+        fuzz_fail("an exception that nobody caught");
+    });
     std::random_device entropy;
     Random random((uint64_t(entropy()) << 32) | entropy());
     for (auto& input : corpus) {
