@@ -56,8 +56,9 @@ plt.show()
 built = [voxrt.build(EXAMPLES / "courtyard.glb", depth=6, rule=rule) for rule in ("touch", "centre")]
 camera = voxrt.aim_camera(built[0].rom, (480, 400))
 pictures = [voxrt.render(one.rom, camera, size=(480, 400), samples=2, background="#eef1f5").colour for one in built]
+picture = np.concatenate(pictures, axis=1)
 plt.figure(figsize=(9.6, 4))
-plt.imshow(np.concatenate(pictures, axis=1))
+plt.imshow(picture)
 plt.axis("off")
 plt.tight_layout()
 plt.show()

@@ -11,13 +11,6 @@ struct RuleBrick {
     Slices touched, filled, surface;
 };
 
-/// Which part of a voxel an object fills.
-struct VoxelVolume {
-    uint32_t object;
-    uint64_t code; // Morton code of the voxel
-    double volume; // 0 … 1
-};
-
 /// The voxels with surface that one object claimed in a brick.
 struct OwnedSurface {
     uint64_t code;

@@ -7,6 +7,7 @@
 
 #include "../rules/rule.h"
 #include "../rules/rule_brick.h"
+#include "../rules/voxel_volume.h"
 #include "tile_voxels.h"
 
 #include <vector>

@@ -31,7 +31,7 @@
 
 #include "../grid/sparse_voxels.h"
 #include "../rules/rule.h"
-#include "../rules/rule_brick.h"
+#include "../rules/voxel_volume.h"
 #include "../scene/fill.h"
 #include "../scene/object_mode.h"
 #include "../scene/parts.h"
