@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
+import signal
 
 import numpy as np
 import pytest
-from vcdvcd import VCDVCD
 
 from voxrt.octree import Rom, from_points
 from voxrt.sim import SimulatorError, follow_ray
@@ -15,6 +15,11 @@ from voxrt.sim.wave_files import write_wave
 from voxrt.voxelize import EMPTY, Material
 
 _rtl = pytest.importorskip("voxrt.sim._rtl")
+
+# It lets a broken pipe end the process, which a worker of pytest does not survive.
+_at_broken_pipe = signal.getsignal(signal.SIGPIPE)
+VCDVCD = pytest.importorskip("vcdvcd").VCDVCD
+signal.signal(signal.SIGPIPE, _at_broken_pipe)
 LANE = "voxrt_rtu.gen_lane[0].u_lane.u_lane"
 CLOCK = 10  # of a wave, nanoseconds
 STAGES = 12

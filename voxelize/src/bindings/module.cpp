@@ -1,5 +1,6 @@
 // voxrt.voxelize._native: the voxelizer for Python. The docstrings are the manual; every array is checked here.
 #include "../coverage/slab_extent.h"
+#include "../grid/morton.h"
 #include "../scene/convex_hull.h"
 #include "../tiles/voxelizer.h"
 #include "colour_bindings.h"
