@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from voxrt.voxelize.rules import RULES
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
 _SECONDS_PER_TRIANGLE = 1e-6
 _SECONDS_PER_SURFACE_VOXEL = 60e-9
 _SECONDS_PER_COLOURED_VOXEL = 100e-9
+_SECONDS_PER_RULED_VOXEL = {"touch": 0.0, "centre": 80e-9, "half": 160e-9}
 _SECONDS_PER_BAKED_VOXEL_AND_SAMPLE = 40e-9
 _SECONDS_PER_HARDWARE_RAY = 6e-6
 _TRIANGLES_PER_POINT = 0.5  # a voxel of four triangles holds several points
@@ -23,6 +26,7 @@ _BYTES_AT_START = 60 << 20
 _BYTES_PER_TRIANGLE = 200
 _BYTES_PER_SURFACE_VOXEL = 8
 _BYTES_PER_COLOURED_VOXEL = 8
+_BYTES_PER_RULED_VOXEL = {"touch": 0, "centre": 10, "half": 12}
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +71,7 @@ def estimate_build(scene: Scene, grid: Grid, options: BuildOptions) -> BuildEsti
     True
     """
     triangles, surface, coloured = 0.0, 0.0, 0.0
+    ruled = dict.fromkeys(RULES, 0.0)
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for item in scene.objects:
         mesh = item.mesh
@@ -82,12 +87,14 @@ def estimate_build(scene: Scene, grid: Grid, options: BuildOptions) -> BuildEsti
         voxels = 1.5 * float(_largest_projections(b - a, c - a).sum()) / grid.voxel_size**2
         triangles += len(mesh.triangles)
         surface += voxels
+        ruled[item.rule or options.rule] += voxels
         coloured += voxels if mesh.appearance is not None else 0
     surface, coloured = (min(number, 8.0**grid.depth) for number in (surface, coloured))
     seconds = (
         triangles * _SECONDS_PER_TRIANGLE
         + surface * _SECONDS_PER_SURFACE_VOXEL
         + coloured * _SECONDS_PER_COLOURED_VOXEL
+        + sum(min(ruled[rule], surface) * _SECONDS_PER_RULED_VOXEL[rule] for rule in RULES)
     )
     if options.bake:
         seconds += surface * options.bake_samples * _SECONDS_PER_BAKED_VOXEL_AND_SAMPLE
@@ -95,6 +102,7 @@ def estimate_build(scene: Scene, grid: Grid, options: BuildOptions) -> BuildEsti
         seconds += hardware_seconds(options.size, options.samples or 1)
     least = _BYTES_AT_START + int(triangles * _BYTES_PER_TRIANGLE)
     taken = least + surface * _BYTES_PER_SURFACE_VOXEL + coloured * _BYTES_PER_COLOURED_VOXEL
+    taken += sum(min(ruled[rule], surface) * _BYTES_PER_RULED_VOXEL[rule] for rule in RULES)
     ends = np.clip((np.stack([low, high]) - grid.origin) / grid.voxel_size, 0, grid.size)[:, :2]
     width = int(np.ceil(max(0.0, float((ends[1] - ends[0]).max()))))
     return BuildEstimate(seconds, int(taken), surface=int(surface), least=least, width=width)
