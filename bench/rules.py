@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from report import ASSETS, ROOT, machine, options_of, publish, table
 
 from voxelize import SKULL, displaced_sphere
-from voxrt.voxelize import fit_grid, load, volume_fractions, voxelize
+from voxrt.voxelize import authoring, fit_grid, load, volume_fractions, voxelize
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -49,9 +49,17 @@ def row(name: str, scene: Scene, depth: int) -> tuple[str, ...]:
     return (name, f"{2**depth}³", f"{seconds['touch'] * 1e3:.0f} ms", *ratios)
 
 
+def tilted_cube() -> Scene:
+    """Give a cube whose walls are steep: each passes many voxels of a column."""
+    yard = authoring.Author("tilted cube")
+    yard.add("cube", authoring.box((1, 1, 1)), rotate=(0, 0.5, 0))
+    return yard.build()
+
+
 def main() -> None:
     arguments = options_of(__doc__).parse_args()
     rows = [row("sphere-70k", displaced_sphere(133), depth) for depth in (8, 9, 10)]
+    rows.append(row("tilted cube", tilted_cube(), 10))
     rows += [row("courtyard", load(ROOT / "examples" / "courtyard.glb"), depth) for depth in (7, 9)]
     if SKULL.exists():
         rows.append(row("skull", load(SKULL), 10))

@@ -51,20 +51,20 @@ class Voxelized(NamedTuple):
     object_notes: NDArray[np.int64]
     seconds: dict[str, float]
 
-def voxelize(
-    depth: int,
-    meshes: list[MeshArrays],
-    kinds: NDArray[np.uint8],
-    mesh_of: NDArray[np.int32],
-    frames: NDArray[np.float64],
-    materials: NDArray[np.uint8],
-    objects_of: NDArray[np.int32],
-    rules: NDArray[np.uint8],
-    objects: int,
-    fill: str,
-    thin: str,
-    threads: int,
-) -> Voxelized: ...
+class SceneParts:
+    def __init__(
+        self,
+        depth: int,
+        meshes: list[MeshArrays],
+        kinds: NDArray[np.uint8],
+        mesh_of: NDArray[np.int32],
+        frames: NDArray[np.float64],
+        materials: NDArray[np.uint8],
+        objects_of: NDArray[np.int32],
+        rules: NDArray[np.uint8],
+    ) -> None: ...
+
+def voxelize(parts: SceneParts, fill: str, thin: str, threads: int) -> Voxelized: ...
 
 class VoxelVolumes(NamedTuple):
     objects: NDArray[np.uint32]
@@ -73,18 +73,7 @@ class VoxelVolumes(NamedTuple):
     whole: NDArray[np.int64]
     known: NDArray[np.uint8]
 
-def find_volumes(
-    depth: int,
-    meshes: list[MeshArrays],
-    kinds: NDArray[np.uint8],
-    mesh_of: NDArray[np.int32],
-    frames: NDArray[np.float64],
-    materials: NDArray[np.uint8],
-    objects_of: NDArray[np.int32],
-    rules: NDArray[np.uint8],
-    objects: int,
-    threads: int,
-) -> VoxelVolumes: ...
+def find_volumes(parts: SceneParts, threads: int) -> VoxelVolumes: ...
 
 class VoxelBlock(NamedTuple):
     brick_codes: NDArray[np.uint64]
@@ -98,22 +87,7 @@ class VoxelBlock(NamedTuple):
     object_tallies: NDArray[np.int64]
 
 class BlockVoxelizer:
-    def __init__(
-        self,
-        depth: int,
-        meshes: list[MeshArrays],
-        kinds: NDArray[np.uint8],
-        mesh_of: NDArray[np.int32],
-        frames: NDArray[np.float64],
-        materials: NDArray[np.uint8],
-        objects_of: NDArray[np.int32],
-        rules: NDArray[np.uint8],
-        objects: int,
-        fill: str,
-        thin: str,
-        threads: int,
-        wanted: NDArray[np.uint8],
-    ) -> None: ...
+    def __init__(self, parts: SceneParts, fill: str, thin: str, threads: int, wanted: NDArray[np.uint8]) -> None: ...
     def use_threads(self, threads: int) -> None: ...
     def blocks(self, block_side: int) -> NDArray[np.int32]: ...
     def objects_of(self, x: int, y: int, block_side: int) -> NDArray[np.uint8]: ...

@@ -93,7 +93,7 @@ class BlockVoxelizer:
     ) -> None:
         threads = arguments.whole("threads", threads, 0, MOST_THREADS)
         self._parts = SceneParts(scene, grid, fill=fill, rule=rule, thin=thin, geometry=geometry, pow2=pow2)
-        self._native_arguments = self._parts.native_arguments()
+        self._arrays = self._parts.arrays()
         self._threads = threads
         self._objects = None if objects is None else tuple(objects)
 
@@ -119,7 +119,8 @@ class BlockVoxelizer:
         if self._objects is not None:
             wanted[list(self._objects)] = 1
         try:
-            return _native.BlockVoxelizer(**self._native_arguments, threads=self._threads, wanted=wanted)
+            parts = _native.SceneParts(**self._arrays)
+            return _native.BlockVoxelizer(parts, **self._parts.choices, threads=self._threads, wanted=wanted)
         except _native.OutOfRangeError as error:
             raise unreachable(self._parts.scene, int(error.args[0])) from None
 
@@ -129,7 +130,7 @@ class BlockVoxelizer:
         from hashlib import blake2b  # noqa: PLC0415 - slow to import, and most builds have no tiles
 
         digest = blake2b(digest_size=16)
-        for argument in self._native_arguments.values():
+        for argument in (*self._parts.choices.values(), *self._arrays.values()):
             _feed(digest, argument)
         return digest.hexdigest()
 

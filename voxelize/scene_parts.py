@@ -50,7 +50,7 @@ class SceneParts:
         arguments.choice("pow2", pow2, POW2_CHOICES)
         self.scene = scene
         self.grid = grid
-        self._choices = {"fill": fill, "thin": thin}
+        self.choices = {"fill": fill, "thin": thin}
         self._rule = rule
         self._geometry = geometry
         self._scale = UNITS_PER_VOXEL / grid.voxel_size
@@ -128,8 +128,8 @@ class SceneParts:
             log.add(*warning)
         return objects, log.warnings()
 
-    def native_arguments(self) -> dict[str, Any]:
-        """Return the parts as arguments of the native voxelizer, by name."""
+    def arrays(self) -> dict[str, Any]:
+        """Return the parts as arguments of the native :class:`SceneParts`, by name."""
         rows = np.array(self._rows, dtype=np.int32).reshape(-1, 4)
         return {
             "depth": self.grid.depth,
@@ -140,8 +140,6 @@ class SceneParts:
             "materials": rows[:, 2].astype(np.uint8),
             "objects_of": np.ascontiguousarray(rows[:, 3]),
             "rules": np.array([RULES.index(one.rule or self._rule) for one in self.scene.objects], np.uint8),
-            "objects": self._objects,
-            **self._choices,
         }
 
 

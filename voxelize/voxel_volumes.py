@@ -104,11 +104,8 @@ def volume_fractions(
     """
     parts = SceneParts(scene, grid, fill="solid", rule="half", thin="drop", geometry=geometry, pow2=pow2)
     threads = arguments.whole("threads", threads, 0, MOST_THREADS)
-    arrays = parts.native_arguments()
     try:
-        found = _native.find_volumes(
-            **{name: arrays[name] for name in arrays if name not in ("fill", "thin")}, threads=threads
-        )
+        found = _native.find_volumes(_native.SceneParts(**parts.arrays()), threads=threads)
     except _native.OutOfRangeError as error:
         raise unreachable(scene, int(error.args[0])) from None
     names = tuple(one.name for one in scene.objects)

@@ -95,7 +95,7 @@ def voxelize(
     parts = SceneParts(scene, grid, fill=fill, rule=rule, thin=thin, geometry=geometry, pow2=pow2)
     threads = arguments.whole("threads", threads, 0, MOST_THREADS)
     try:
-        result = _native.voxelize(**parts.native_arguments(), threads=threads)
+        result = _native.voxelize(_native.SceneParts(**parts.arrays()), **parts.choices, threads=threads)
     except _native.OutOfRangeError as error:
         raise unreachable(scene, int(error.args[0])) from None
     return Voxelization(voxels_of(grid.depth, result), *parts.described(result), result.seconds)

@@ -106,13 +106,11 @@ Thin thin_of(const std::string& name) {
 /// The parts of a scene, with the arrays that they borrow.
 class SceneParts {
 public:
-    SceneParts(int depth, std::vector<MeshArrays> meshes, InputOf<uint8_t> kinds, InputOf<int32_t> mesh_of,
-               InputOf<double> frames, InputOf<uint8_t> materials, InputOf<int32_t> objects_of, InputOf<uint8_t> rules,
-               int objects)
-        : meshes_(std::move(meshes)), frames_(std::move(frames)) {
+    SceneParts(int grid_depth, std::vector<MeshArrays> meshes, InputOf<uint8_t> kinds, InputOf<int32_t> mesh_of,
+               InputOf<double> frames, InputOf<uint8_t> materials, InputOf<int32_t> objects_of, InputOf<uint8_t> rules)
+        : depth(grid_depth), objects(rules.size()), meshes_(std::move(meshes)), frames_(std::move(frames)) {
         require(depth >= 1 && depth <= 16, "depth must be 1 … 16");
-        require(objects >= 0, "objects must not be negative");
-        require(rules.ndim() == 1 && rules.size() == size_t(objects), "rules must have an element per object");
+        require(rules.ndim() == 1, "rules must have an element per object");
         require(std::all_of(rules.data(), rules.data() + rules.size(), [](uint8_t rule) { return rule <= 2; }),
                 "rules must be 0 … 2");
         const size_t count = kinds.size();
@@ -138,7 +136,8 @@ public:
             require(materials.data()[p] != 0 ||
                         (mesh != nullptr && (!mesh->materials.empty() || mesh->triangles.empty())),
                     "a part needs a material");
-            require(objects_of.data()[p] >= 0 && objects_of.data()[p] < objects, "objects_of must be below objects");
+            require(objects_of.data()[p] >= 0 && size_t(objects_of.data()[p]) < objects,
+                    "objects_of must be below the number of objects");
             require(p == 0 || objects_of.data()[p - 1] <= objects_of.data()[p], "objects_of must ascend");
             parts.push_back({kind, mesh, frames_.data() + 12 * p, materials.data()[p], uint32_t(objects_of.data()[p]),
                              static_cast<Rule>(rules.data()[objects_of.data()[p]])});
@@ -147,6 +146,8 @@ public:
     SceneParts(const SceneParts&) = delete;
     SceneParts& operator=(const SceneParts&) = delete;
 
+    const int depth;
+    const size_t objects;
     std::vector<PartView> parts;
 
 private:
@@ -171,32 +172,25 @@ nb::object voxelized_of(SparseVoxels& out) {
 
 void require_threads(int threads) { require(threads >= 0 && threads <= 1024, "threads must be 0 … 1024"); }
 
-nb::object voxelize_parts(int depth, std::vector<MeshArrays> meshes, InputOf<uint8_t> kinds, InputOf<int32_t> mesh_of,
-                          InputOf<double> frames, InputOf<uint8_t> materials, InputOf<int32_t> objects_of,
-                          InputOf<uint8_t> rules, int objects, const std::string& fill, const std::string& thin,
-                          int threads) {
+nb::object voxelize_parts(const SceneParts& scene, const std::string& fill, const std::string& thin, int threads) {
     require_threads(threads);
-    const SceneParts scene(depth, std::move(meshes), kinds, mesh_of, frames, materials, objects_of, rules, objects);
     SparseVoxels out;
     {
         const LongCall call;
-        out = voxelize(depth, scene.parts, size_t(objects), fill_of(fill), threads, thin_of(thin));
+        out = voxelize(scene.depth, scene.parts, scene.objects, fill_of(fill), threads, thin_of(thin));
     }
     return voxelized_of(out);
 }
 
-nb::object volumes_of_parts(int depth, std::vector<MeshArrays> meshes, InputOf<uint8_t> kinds, InputOf<int32_t> mesh_of,
-                            InputOf<double> frames, InputOf<uint8_t> materials, InputOf<int32_t> objects_of,
-                            InputOf<uint8_t> rules, int objects, int threads) {
+nb::object volumes_of_parts(const SceneParts& scene, int threads) {
     require_threads(threads);
-    const SceneParts scene(depth, std::move(meshes), kinds, mesh_of, frames, materials, objects_of, rules, objects);
     ObjectVolumes found;
     LargeVector<uint32_t> owners;
     LargeVector<std::array<int32_t, 3>> places;
     LargeVector<double> volumes;
     {
         const LongCall call;
-        found = find_volumes(depth, scene.parts, size_t(objects), threads);
+        found = find_volumes(scene.depth, scene.parts, scene.objects, threads);
         for (const VoxelVolume& voxel : found.voxels) {
             owners.push_back(voxel.object);
             places.push_back({int32_t(gather_bits(voxel.code)), int32_t(gather_bits(voxel.code >> 1)),
@@ -209,21 +203,19 @@ nb::object volumes_of_parts(int depth, std::vector<MeshArrays> meshes, InputOf<u
     return voxel_volumes(take(owners), take(places), take(volumes), take(whole), take(known));
 }
 
-/// A BlockVoxelizer with the arrays that it reads.
+/// A BlockVoxelizer. The parts must outlive it.
 class PythonBlockVoxelizer {
 public:
-    PythonBlockVoxelizer(int depth, std::vector<MeshArrays> meshes, InputOf<uint8_t> kinds, InputOf<int32_t> mesh_of,
-                         InputOf<double> frames, InputOf<uint8_t> materials, InputOf<int32_t> objects_of,
-                         InputOf<uint8_t> rules, int objects, const std::string& fill, const std::string& thin,
-                         int threads, InputOf<uint8_t> wanted)
-        : scene_(depth, std::move(meshes), kinds, mesh_of, frames, materials, objects_of, rules, objects),
-          side_(1 << depth), objects_(size_t(objects)) {
+    PythonBlockVoxelizer(const SceneParts& scene, const std::string& fill, const std::string& thin, int threads,
+                         InputOf<uint8_t> wanted)
+        : side_(1 << scene.depth), objects_(scene.objects) {
         require_threads(threads);
         require(wanted.ndim() == 1 && (wanted.size() == 0 || wanted.size() == objects_),
                 "wanted must have an element per object, or none");
         const LongCall call;
-        native_ = std::make_unique<BlockVoxelizer>(depth, scene_.parts, objects_, fill_of(fill), threads, thin_of(thin),
-                                                   std::span<const uint8_t>(wanted.data(), wanted.size()));
+        native_ =
+            std::make_unique<BlockVoxelizer>(scene.depth, scene.parts, objects_, fill_of(fill), threads, thin_of(thin),
+                                             std::span<const uint8_t>(wanted.data(), wanted.size()));
     }
 
     void use_threads(int threads) {
@@ -283,7 +275,6 @@ private:
         return {x, y, side};
     }
 
-    SceneParts scene_;
     int side_;
     size_t objects_;
     std::unique_ptr<BlockVoxelizer> native_;
@@ -305,7 +296,7 @@ nb::object hull_of(InputOf<double> positions, InputOf<double> frame) {
     return rows_to_numpy(std::move(triangles));
 }
 
-constexpr auto kVoxelizeManual = R"(Voxelize P parts; where they compete, the first keeps the voxel.
+constexpr auto kPartsManual = R"(P parts of O objects on a grid; it keeps the arrays.
 
 Parameters
 ----------
@@ -327,11 +318,23 @@ frames
 materials
     Shape (P,): 1 … 255, or 0 where each triangle has its own.
 objects_of
-    Shape (P,): ascending, below `objects`.
-fill
-    "surface", "solid" or "auto": src/scene/fill.h.
+    Shape (P,): ascending, below O.
 rules
     Shape (O,), by object: 0 touch, 1 centre, 2 half (src/rules/rule.h).
+
+Raises
+------
+ValueError
+    An array of the wrong shape or with an index out of range.)";
+
+constexpr auto kVoxelizeManual = R"(Voxelize parts; where they compete, the first keeps the voxel.
+
+Parameters
+----------
+parts
+    :class:`SceneParts`.
+fill
+    "surface", "solid" or "auto": src/scene/fill.h.
 thin
     "keep" or "drop".
 threads
@@ -347,9 +350,7 @@ Voxelized
 Raises
 ------
 OutOfRangeError
-    A part reaches beyond 2**18 voxels from the grid's corner, or is not a number.
-ValueError
-    An array of the wrong shape or with an index out of range.)";
+    A part reaches beyond 2**18 voxels from the grid's corner, or is not a number.)";
 
 constexpr auto kBlockVoxelizerManual = R"(The same, a block of columns at a time and in any order (src/voxelizer.h).
 
@@ -404,21 +405,20 @@ NB_MODULE(_native, m) {
             }
         },
         nullptr);
-    m.def("voxelize", &voxelize_parts, nb::arg("depth"), nb::arg("meshes"), nb::arg("kinds"), nb::arg("mesh_of"),
-          nb::arg("frames"), nb::arg("materials"), nb::arg("objects_of"), nb::arg("rules"), nb::arg("objects"),
-          nb::arg("fill"), nb::arg("thin"), nb::arg("threads"), kVoxelizeManual);
-    m.def("find_volumes", &volumes_of_parts, nb::arg("depth"), nb::arg("meshes"), nb::arg("kinds"), nb::arg("mesh_of"),
-          nb::arg("frames"), nb::arg("materials"), nb::arg("objects_of"), nb::arg("rules"), nb::arg("objects"),
-          nb::arg("threads"),
-          "Which part of each voxel with surface an object fills; arguments are those of voxelize(). By object: "
-          "objects, voxels (x, y, z), volumes. Per object: voxels that are filled whole, and whether it has volumes.");
-    nb::class_<PythonBlockVoxelizer>(m, "BlockVoxelizer", kBlockVoxelizerManual)
+    nb::class_<SceneParts>(m, "SceneParts", kPartsManual)
         .def(nb::init<int, std::vector<MeshArrays>, InputOf<uint8_t>, InputOf<int32_t>, InputOf<double>,
-                      InputOf<uint8_t>, InputOf<int32_t>, InputOf<uint8_t>, int, const std::string&, const std::string&,
-                      int, InputOf<uint8_t>>(),
+                      InputOf<uint8_t>, InputOf<int32_t>, InputOf<uint8_t>>(),
              nb::arg("depth"), nb::arg("meshes"), nb::arg("kinds"), nb::arg("mesh_of"), nb::arg("frames"),
-             nb::arg("materials"), nb::arg("objects_of"), nb::arg("rules"), nb::arg("objects"), nb::arg("fill"),
-             nb::arg("thin"), nb::arg("threads"), nb::arg("wanted"))
+             nb::arg("materials"), nb::arg("objects_of"), nb::arg("rules"));
+    m.def("voxelize", &voxelize_parts, nb::arg("parts"), nb::arg("fill"), nb::arg("thin"), nb::arg("threads"),
+          kVoxelizeManual);
+    m.def("find_volumes", &volumes_of_parts, nb::arg("parts"), nb::arg("threads"),
+          "Which part of each voxel with surface an object fills; the rules do not matter. By object: objects, voxels "
+          "(x, y, z), volumes. Per object: voxels that are filled whole, and whether it has volumes.");
+    nb::class_<PythonBlockVoxelizer>(m, "BlockVoxelizer", kBlockVoxelizerManual)
+        .def(nb::init<const SceneParts&, const std::string&, const std::string&, int, InputOf<uint8_t>>(),
+             nb::keep_alive<1, 2>(), nb::arg("parts"), nb::arg("fill"), nb::arg("thin"), nb::arg("threads"),
+             nb::arg("wanted"))
         .def("use_threads", &PythonBlockVoxelizer::use_threads, nb::arg("threads"), "Sets the number of threads.")
         .def("blocks", &PythonBlockVoxelizer::blocks, nb::arg("block_side"),
              "The corners (x, y) of the blocks with geometry, in Morton order: int32, shape (B, 2).")

@@ -21,6 +21,14 @@ inline constexpr int kBrickVoxels = 512;
 inline bool is_full(const Slices& s) { return (s[0] & s[1] & s[2] & s[3] & s[4] & s[5] & s[6] & s[7]) == ~uint64_t{0}; }
 inline bool is_empty(const Slices& s) { return (s[0] | s[1] | s[2] | s[3] | s[4] | s[5] | s[6] | s[7]) == 0; }
 
+/// The voxels of `a` that are not in `b`.
+inline Slices without(const Slices& a, const Slices& b) {
+    Slices found;
+    for (int z = 0; z < kBrickSide; ++z)
+        found[size_t(z)] = a[size_t(z)] & ~b[size_t(z)];
+    return found;
+}
+
 /// The only material of a brick's voxels, 0 of which are empty; 0 where there are several, or none.
 inline uint8_t only_material(const std::array<uint8_t, kBrickVoxels>& materials) {
     uint8_t only = 0;

@@ -9,6 +9,8 @@ namespace voxrt::voxelize {
 struct RuleBrick {
     uint64_t code; // Morton code of the brick's corner / 8
     Slices touched, filled, surface;
+
+    Slices removed() const { return without(touched, filled); }
 };
 
 /// The voxels with surface that one object claimed in a brick.

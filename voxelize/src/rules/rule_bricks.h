@@ -10,6 +10,10 @@
 
 namespace voxrt::voxelize {
 
+/// Of 3 x 3 x 3 voxels or bricks, x + 3 y + 9 z: those at the sides of the middle one, along -x, +x, -y, +y, -z, +z.
+inline constexpr int kSides[6] = {12, 14, 10, 16, 4, 22};
+inline constexpr uint32_t kSideMask = 1u << 12 | 1u << 14 | 1u << 10 | 1u << 16 | 1u << 4 | 1u << 22;
+
 /// The number of the octant that holds the brick with a code, or that of all octants.
 inline size_t find_octant(const SparseVoxels& voxels, uint64_t code) {
     const auto corner = [&](size_t i) { return voxels.octant_codes[i] << 3 * (voxels.octant_levels[i] - 3); };
@@ -84,7 +88,7 @@ public:
         }();
         std::array<const Slices*, 27> found;
         for (size_t n = 0; n < 27; ++n)
-            found[n] = around[n] == kEmpty ? &none : around[n] == kFull ? &all : &of(bricks_[around[n]], around[n]);
+            found[n] = around[n] == kEmpty ? &none : around[n] == kFull ? &all : &of(bricks_[around[n]]);
         return found;
     }
 
@@ -126,10 +130,10 @@ private:
     }
 
     void add_whole_beside(const RuleBrick& brick, std::vector<RuleBrick>& beside) const {
-        Slices removed;
+        const Slices removed = brick.removed();
         uint64_t any = 0;
-        for (int z = 0; z < kBrickSide; ++z)
-            any |= removed[z] = brick.touched[z] & ~brick.filled[z];
+        for (const uint64_t slice : removed)
+            any |= slice;
         if (any == 0)
             return;
         constexpr uint64_t first_column = 0x0101'0101'0101'0101;

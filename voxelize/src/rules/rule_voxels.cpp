@@ -10,13 +10,6 @@
 namespace voxrt::voxelize {
 namespace {
 
-Slices without(const Slices& a, const Slices& b) {
-    Slices found;
-    for (int z = 0; z < kBrickSide; ++z)
-        found[z] = a[z] & ~b[z];
-    return found;
-}
-
 /// The materials of a solid brick's voxels: one, or by Morton code in the brick.
 struct BrickMaterials {
     uint8_t only = 0;
@@ -33,10 +26,6 @@ BrickMaterials materials_of(const SparseVoxels& voxels, uint64_t code) {
         return {voxels.brick_materials[brick]};
     return {0, &voxels.cells[size_t(voxels.brick_rows[brick])]};
 }
-
-/// The sides of a voxel in their order.
-constexpr int kSides[6] = {12, 14, 10, 16, 4, 22}; // x + 3 y + 9 z of the voxel beside it
-constexpr uint32_t kSideBricks = 1u << 12 | 1u << 14 | 1u << 10 | 1u << 16 | 1u << 4 | 1u << 22;
 
 class RuledVoxels {
 public:
@@ -55,7 +44,7 @@ public:
         if (std::all_of(owned_.begin(), owned_.end(), [this](const auto& o) { return o.object == owned_[0].object; }))
             return; // nothing else could take a material
         for_each_brick(workers, [this](size_t i) {
-            if (!is_empty(without(bricks_[i].touched, bricks_[i].filled)))
+            if (!is_empty(bricks_[i].removed()))
                 orphans_[i] = orphans_of(i);
         });
     }
@@ -191,8 +180,8 @@ private:
 
     void add_replaced(size_t i, ReplacedBricks& out) const {
         const RuleBrick& brick = bricks_[i];
-        const std::array<uint32_t, 27> around = bricks_.around(i, kSideBricks);
-        const auto removed = [this](uint32_t n) { return without(bricks_[n].touched, bricks_[n].filled); };
+        const std::array<uint32_t, 27> around = bricks_.around(i, kSideMask);
+        const auto removed = [this](uint32_t n) { return bricks_[n].removed(); };
         const auto orphans = [this](uint32_t n) { return orphans_[n]; };
         const Slices bare = without(brick.filled, brick.surface);
         Slices takers[6], done{};

@@ -12,9 +12,8 @@ struct ThinBrick {
     Slices candidates, taken;
 };
 
-/// The 27 voxels around one: bit x + 3 y + 9 z, each 0 … 2. Which of them are neighbours by a side, or at all.
+// The 27 voxels around one: bit x + 3 y + 9 z, each 0 … 2.
 constexpr uint32_t kMiddle = 1u << 13;
-constexpr uint32_t kSides = 1u << 4 | 1u << 10 | 1u << 12 | 1u << 14 | 1u << 16 | 1u << 22;
 constexpr uint32_t kNoCorners = [] {
     uint32_t found = 0;
     for (int n = 0; n < 27; ++n)
@@ -22,6 +21,8 @@ constexpr uint32_t kNoCorners = [] {
             found |= 1u << n;
     return found & ~kMiddle;
 }();
+
+/// The neighbours of each: by a side, or at all.
 template <bool by_sides> constexpr std::array<uint32_t, 27> neighbours() {
     std::array<uint32_t, 27> found{};
     for (int a = 0; a < 27; ++a)
@@ -57,7 +58,7 @@ bool is_simple(uint32_t filled) {
     filled &= ~kMiddle;
     if (filled == 0 || reached<false>(filled & (~filled + 1), filled) != filled)
         return false;
-    const uint32_t empty = ~filled & kNoCorners, sides = empty & kSides;
+    const uint32_t empty = ~filled & kNoCorners, sides = empty & kSideMask;
     return sides != 0 && (sides & ~reached<true>(sides & (~sides + 1), empty)) == 0;
 }
 
@@ -92,10 +93,10 @@ bool leaves_none_alone(const BrickWindow<2>& filled, const BrickWindow<2>& touch
 Slices find_candidates(const RuleBricks& bricks, size_t i, const std::array<uint32_t, 27>& around) {
     BrickWindow<3> bulk;
     BrickWindow<1> thin;
-    bulk.gather(bricks.sets(around, [](const RuleBrick& b, uint32_t) -> const Slices& { return b.filled; }));
+    bulk.gather(bricks.sets(around, [](const RuleBrick& b) -> const Slices& { return b.filled; }));
     bulk.open();
     bulk.dilate();
-    thin.gather(bricks.sets(around, [](const RuleBrick& b, uint32_t) -> const Slices& { return b.touched; }));
+    thin.gather(bricks.sets(around, [](const RuleBrick& b) -> const Slices& { return b.touched; }));
     // The bulk is known two voxels into the margin, and what is thin one voxel.
     constexpr uint16_t known = 0b0001'1111'1111'1000;
     BrickWindow<1> apart;
@@ -106,9 +107,10 @@ Slices find_candidates(const RuleBricks& bricks, size_t i, const std::array<uint
     if (any == 0)
         return {};
     apart.dilate();
+    const Slices removed = bricks[i].removed();
     Slices found = apart.middle();
     for (int z = 0; z < kBrickSide; ++z)
-        found[z] &= bricks[i].touched[z] & ~bricks[i].filled[z];
+        found[z] &= removed[z];
     return found;
 }
 
@@ -130,8 +132,8 @@ void take(const RuleBricks& bricks, ThinBrick& thin, int turn) {
     if (!any)
         return;
     BrickWindow<2> filled, touched;
-    filled.gather(bricks.sets(thin.around, [](const RuleBrick& b, uint32_t) -> const Slices& { return b.filled; }));
-    touched.gather(bricks.sets(thin.around, [](const RuleBrick& b, uint32_t) -> const Slices& { return b.touched; }));
+    filled.gather(bricks.sets(thin.around, [](const RuleBrick& b) -> const Slices& { return b.filled; }));
+    touched.gather(bricks.sets(thin.around, [](const RuleBrick& b) -> const Slices& { return b.touched; }));
     for (int z = first(2, turn / 9); z < kBrickSide; z += 3)
         for (uint64_t left = thin.candidates[z] & square; left != 0; left &= left - 1) {
             const int bit = std::countr_zero(left), x = column_x(bit), y = column_y(bit);
@@ -149,10 +151,7 @@ void keep_thin_parts(RuleBricks& bricks, const Workers& workers) {
     workers.run(jobs, [&](size_t job, int) {
         for (size_t i = job * kBricks; i < std::min(bricks.size(), (job + 1) * kBricks); ++i) {
             count_work(100);
-            Slices removed;
-            for (int z = 0; z < kBrickSide; ++z)
-                removed[z] = bricks[i].touched[z] & ~bricks[i].filled[z];
-            if (is_empty(removed))
+            if (is_empty(bricks[i].removed()))
                 continue;
             const std::array<uint32_t, 27> around = bricks.around(i);
             const Slices candidates = find_candidates(bricks, i, around);

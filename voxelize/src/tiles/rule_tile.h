@@ -19,7 +19,10 @@ public:
     /// For tiles of a grid of `side` voxels.
     explicit RuleTile(int side) : filled_(side), surface_(side) {}
 
-    void clear() {
+    /// Empties it for the tile at (tile_x, tile_y), in tiles.
+    void clear(int tile_x, int tile_y) {
+        tile_x_ = tile_x;
+        tile_y_ = tile_y;
         filled_.clear();
         surface_.clear();
         owned_.clear();
@@ -48,7 +51,7 @@ public:
             return;
         surface_.claim(column, k, surface, kAny, nullptr);
         if (!is_empty(claimed))
-            owned_.push_back({uint64_t(column) * uint64_t(filled_.height()) + uint64_t(k), object_, claimed});
+            owned_.push_back({code_of(column, k), object_, claimed});
     }
 
     /// Adds volumes of the part in voxels of a brick, by slice and bit.
@@ -69,9 +72,8 @@ public:
             }
     }
 
-    /// Appends the bricks of the tile at (tile_x, tile_y), in tiles, and who owns their surface.
-    void list(const TileVoxels& tile, int tile_x, int tile_y, std::vector<RuleBrick>& bricks,
-              std::vector<OwnedSurface>& owned) const {
+    /// Appends the bricks of the tile, and who owns their surface.
+    void list(const TileVoxels& tile, std::vector<RuleBrick>& bricks, std::vector<OwnedSurface>& owned) const {
         for (int column = 0; column < kTileColumns; ++column) {
             if (!tile.column_used(column))
                 continue;
@@ -86,21 +88,17 @@ public:
                     add_halves(filled, sums_[sum_rows_[place]]);
                 for (int z = 0; z < kBrickSide; ++z)
                     filled[z] &= touched[z];
-                bricks.push_back({code_of(column, k, tile_x, tile_y), touched, filled, surface_.mask_of(surface)});
+                bricks.push_back({code_of(column, k), touched, filled, surface_.mask_of(surface)});
             }
         }
-        for (const OwnedSurface& part : owned_) {
-            const auto column = int(part.code / uint64_t(filled_.height()));
-            const auto k = int(part.code % uint64_t(filled_.height()));
-            owned.push_back({code_of(column, k, tile_x, tile_y), part.object, part.voxels});
-        }
+        owned.insert(owned.end(), owned_.begin(), owned_.end());
     }
 
     /// Appends the volumes of the last object, and forgets it.
-    void take_volumes(int tile_x, int tile_y, std::vector<VoxelVolume>& volumes) {
+    void take_volumes(std::vector<VoxelVolume>& volumes) {
         for (const size_t slot : summed_) {
             const auto column = int(slot / size_t(filled_.height())), k = int(slot % size_t(filled_.height()));
-            const uint64_t code = code_of(column, k, tile_x, tile_y) << 9;
+            const uint64_t code = code_of(column, k) << 9;
             const Slices surface = surface_.mask_of(*surface_.slots(column, k));
             const Slices whole = filled_.mask_of(*filled_.slots(column, k)); // by another part
             for (int z = 0; z < kBrickSide; ++z)
@@ -111,7 +109,7 @@ public:
                     volumes.push_back({object_, code | place, std::min(volume, 1.0)});
                 }
         }
-        clear();
+        clear(tile_x_, tile_y_);
     }
 
 private:
@@ -125,9 +123,9 @@ private:
                 filled[z] |= uint64_t{volumes[size_t(z * 64 + bit)] >= kHalf} << bit;
     }
 
-    static uint64_t code_of(int column, int k, int tile_x, int tile_y) {
-        return morton(uint32_t(tile_x * kTileBricks + column % kTileBricks),
-                      uint32_t(tile_y * kTileBricks + column / kTileBricks), uint32_t(k));
+    uint64_t code_of(int column, int k) const {
+        return morton(uint32_t(tile_x_ * kTileBricks + column % kTileBricks),
+                      uint32_t(tile_y_ * kTileBricks + column / kTileBricks), uint32_t(k));
     }
 
     TileVoxels filled_, surface_;
@@ -136,7 +134,8 @@ private:
     std::vector<std::array<double, kBrickVoxels>> sums_;
     uint32_t object_ = 0;
     Rule rule_of_part_ = Rule::touch;
-    std::vector<OwnedSurface> owned_; // `code`: the slot in the tile
+    int tile_x_ = 0, tile_y_ = 0;
+    std::vector<OwnedSurface> owned_;
 };
 
 } // namespace voxrt::voxelize

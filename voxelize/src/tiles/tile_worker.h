@@ -72,10 +72,24 @@ public:
         if (!s.tile.empty())
             s.sorter.sort(s.tile, slot, tile_x, tile_y, out);
         if (s.rule)
-            s.rule->list(s.tile, tile_x, tile_y, out.rule_bricks, out.owned);
+            s.rule->list(s.tile, out.rule_bricks, out.owned);
         s.seconds.order += lap();
     }
 
+    /// Finds the volumes of each object in one tile, as if it were alone.
+    void find_volumes(uint32_t index, Scratch& s, TileResult& out) const {
+        uint32_t last = kNone;
+        for_each_part(index, s, [&](uint32_t object) {
+            if (last != kNone && object != last) {
+                s.rule->take_volumes(out.volumes);
+                s.tile.clear();
+            }
+            last = object;
+        });
+        s.rule->take_volumes(out.volumes);
+    }
+
+private:
     /// Claims what the parts of a tile cover. `begin`: called with the object of each part before it is claimed.
     template <class Begin> void for_each_part(uint32_t index, Scratch& s, Begin begin) const {
         const int tile_x = int(index) % bins_.tiles_per_side, tile_y = int(index) / bins_.tiles_per_side;
@@ -83,7 +97,7 @@ public:
                             std::min(tile_y * kTileSide + kTileSide, side_) - 1, side_ - 1};
         s.tile.clear();
         if (s.rule)
-            s.rule->clear();
+            s.rule->clear(tile_x, tile_y);
         for (uint32_t i = bins_.starts[index], end = bins_.starts[index + 1]; i < end;) {
             const uint32_t part = bins_.triangles[i].part;
             uint32_t next = i + 1;
@@ -104,21 +118,6 @@ public:
         }
     }
 
-    /// Finds the volumes of each object in one tile, as if it were alone.
-    void find_volumes(uint32_t index, Scratch& s, TileResult& out) const {
-        const int tile_x = int(index) % bins_.tiles_per_side, tile_y = int(index) / bins_.tiles_per_side;
-        uint32_t last = kNone;
-        for_each_part(index, s, [&](uint32_t object) {
-            if (last != kNone && object != last) {
-                s.rule->take_volumes(tile_x, tile_y, out.volumes);
-                s.tile.clear();
-            }
-            last = object;
-        });
-        s.rule->take_volumes(tile_x, tile_y, out.volumes);
-    }
-
-private:
     void add_solid(const PartView& part, const Window& window, Scratch& s) const {
         const double* f = part.frame;
         auto whole = [&](int i) { return int64_t(snap(f[i], part.object)); };
