@@ -75,6 +75,8 @@ def test_solids_without_triangles(stretched):
     ball = SceneObject("ball", box_mesh((0, 0, 0), (1, 1, 1)), shape, (SphereCollider((0.0, 0.0, 0.0), 9.5),), 3)
     voxels = dense(voxelize(scene_of(ball), grid, rule="centre").voxels) != 0
     np.testing.assert_array_equal(voxels, (((at - middle) / np.diag(shape)[:3]) ** 2).sum(-1) <= 9.5**2)
+    half = dense(voxelize(scene_of(ball), grid, rule="half").voxels) != 0
+    np.testing.assert_array_equal(half, voxels)  # round solids go by their centres
 
 
 def wires(count, side, thickness, seed):
@@ -138,6 +140,8 @@ def test_a_surface_with_small_holes_is_that_without_but_near_them():
     at = ball.positions[ball.triangles[0]].mean(0)
     far = np.linalg.norm(np.stack(np.meshgrid(*[np.arange(32) + 0.5] * 3, indexing="ij"), -1) - at, axis=-1) > 4
     np.testing.assert_array_equal(voxels[far], wanted[far])
+    half = dense(voxelize(one_object(holed), grid, rule="half", thin="drop").voxels) != 0
+    np.testing.assert_array_equal(half, voxels)  # it goes by centres, too
 
 
 @pytest.mark.parametrize("thin", ["keep", "drop"])
