@@ -89,8 +89,17 @@ def test_a_description_with_a_mistake_is_refused_in_one_line(written, change, pr
     assert "\n" not in str(found.value)
 
 
+def test_a_file_that_is_not_json(tmp_path):
+    path = tmp_path / "board.json"
+    for text in (b"", b'{"title": "U', b'{"title": "\xff"}'):
+        path.write_bytes(text)
+        with pytest.raises(ValueError, match=r"board\.json: is not JSON: .*; begin with a board\.json of") as found:
+            build.read_board(str(path))
+        assert "\n" not in str(found.value)
+
+
 def test_a_file_that_is_not_there(tmp_path):
-    with pytest.raises(ValueError, match=r"board\.json: No such file or directory$"):
+    with pytest.raises(ValueError, match=r"board\.json: cannot be read: No such .*; name the board\.json of"):
         build.read_board(str(tmp_path / "board.json"))
     with pytest.raises(KeyError, match="there is no board 'abacus'; there are icepi-zero, "):
         build.read_board("abacus")
