@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-_DESIGNS = Path(__file__).resolve().parents[1] / "board" / "designs"  # data of a room above this one, whose code is not imported
+# Data of a room above this one, whose code is not imported.
+_DESIGNS = Path(__file__).resolve().parents[1] / "board" / "designs"
 
 
 def _words_of(description: Path) -> int:
