@@ -7,7 +7,7 @@ from voxrt.octree.animation import frames_as_octants as frames_as_octants
 from voxrt.octree.animation import join_frames as join_frames
 from voxrt.octree.assembly import Assembly as Assembly
 from voxrt.octree.assembly import DiskAssembly as DiskAssembly
-from voxrt.octree.budget import BOARDS as BOARDS
+from voxrt.octree.board_memories import BOARDS as BOARDS
 from voxrt.octree.budget import Fit as Fit
 from voxrt.octree.budget import coarsen as coarsen
 from voxrt.octree.budget import fit as fit

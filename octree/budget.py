@@ -14,9 +14,7 @@ plain coarser world included, and the most similar one is taken.
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,18 +29,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
-
-_DESIGNS = Path(__file__).resolve().parents[1] / "board" / "designs"
-
-
-def _words_of(description: Path) -> int:
-    return 1 + 8 * int(json.loads(description.read_bytes())["octree_blocks"])
-
-
-# The design of pynq-z1 is made by Vivado: rtl/vivado.
-_WORDS = {"pynq-z1": 1 + 8 * 4096} | {path.parent.name: _words_of(path) for path in _DESIGNS.glob("*/board.json")}
-BOARDS = dict(sorted(_WORDS.items()))
-"""Words of the octree memory of each board's design: blocks of 8, and the root."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from voxrt.octree.camera import POSITION_UNITS
 from voxrt.octree.query import Corner, as_box
-from voxrt.voxelize.arguments import real, vector
+from voxrt.voxelize.arguments import real, shown, vector
+
+if TYPE_CHECKING:
+    from voxrt.octree import _native
 
 Point: TypeAlias = tuple[float, float, float]
 
@@ -109,10 +112,27 @@ class Capsule:
 Shape: TypeAlias = Box | Sphere | Capsule
 
 
-def in_units(point: Point) -> Corner:
-    """Return a point of a shape in whole numbers of 1/16 voxel."""
-    x, y, z = (int(coordinate * POSITION_UNITS) for coordinate in point)
+def change_shape(world: _native.World, shape: Shape, material: int, *, solid_only: bool) -> bool:
+    """Give a shape's voxels a material; False where the result does not fit. TypeError if it is no shape."""
+    match shape:
+        case Box():
+            return world.change_box(shape.low, shape.high, material, solid_only)
+        case Sphere():
+            return world.change_ball(_in_units(shape.centre), _whole(shape.radius), material, solid_only)
+        case Capsule():
+            ends = _in_units(shape.start), _in_units(shape.end)
+            return world.change_capsule(*ends, _whole(shape.radius), material, solid_only)
+    raise TypeError(f"shape must be a Box, a Sphere or a Capsule, not {shown(shape)}")
+
+
+def _in_units(point: Point) -> Corner:
+    x, y, z = (_whole(coordinate) for coordinate in point)
     return x, y, z
+
+
+def _whole(value: float) -> int:
+    """Return voxels in whole numbers of 1/16 voxel."""
+    return int(value * POSITION_UNITS)
 
 
 def _point(name: str, value: object) -> Point:

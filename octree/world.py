@@ -8,18 +8,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.octree import _native
-from voxrt.octree.camera import POSITION_UNITS
 from voxrt.octree.lod import with_means
 from voxrt.octree.octree import Octree
 from voxrt.octree.patch import Patch
 from voxrt.octree.piece import Piece
 from voxrt.octree.query import as_box, as_corner, as_points
 from voxrt.octree.rom import Rom
-from voxrt.octree.shapes import Box, Capsule, Shape, Sphere, in_units
+from voxrt.octree.shapes import Shape, change_shape
 from voxrt.octree.world_figures import WorldFigures
+from voxrt.octree.world_materials import add_missing
 from voxrt.voxelize import DoesNotFitError, Material
-from voxrt.voxelize.arguments import instance, shown, whole, whole_array
-from voxrt.voxelize.materials import MATERIAL_LIMIT
+from voxrt.voxelize.arguments import instance, whole, whole_array
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -71,7 +70,7 @@ class World:
         self._rom = instance("rom", rom, Rom)
         self._limit = _MOST_WORDS if words is None else whole("words", words, 1, _MOST_WORDS)
         steps = whole("undo_steps", undo_steps, 0, 1_000_000)
-        self._materials = list(rom.materials)
+        self._materials = rom.materials
         if len(rom.octree.words) > self._limit:
             raise DoesNotFitError(
                 f"{rom.name}: its {len(rom.octree.words):,} words do not fit the {self._limit:,} of the world's memory"
@@ -99,7 +98,7 @@ class World:
     @property
     def materials(self) -> tuple[Material, ...]:
         """The materials by id; entry 0 is empty space."""
-        return tuple(self._materials)
+        return self._materials
 
     def add_material(self, material: Material) -> int:
         """Add a material, and return its id. One that is there already keeps its id. Undo does not remove it.
@@ -120,12 +119,8 @@ class World:
         >>> world.add_material(gold), world.add_material(oak)
         (2, 1)
         """
-        instance("material", material, Material)
-        if material in self._materials[1:]:
-            return self._materials.index(material, 1)
-        self._check_room([material])
-        self._materials.append(material)
-        return len(self._materials) - 1
+        self._materials = add_missing(self._materials, [instance("material", material, Material)])
+        return self._materials.index(material, 1)
 
     def set(self, points: ArrayLike, materials: ArrayLike) -> None:
         """Give voxels their materials; 0 empties them.
@@ -275,16 +270,10 @@ class World:
         if not isinstance(other, Piece):
             raise TypeError(f"other must be a Piece or a Rom, not {type(other).__name__}")
         corner, quarters = as_corner("at", at), whole("turned", turned, 0, 3)
-        used = [int(id_) for id_ in np.flatnonzero(_native.leaf_counts(other.octree.words, other.octree.depth).any(0))]
-        new = [
-            material
-            for material in dict.fromkeys(other.materials[id_] for id_ in used if id_ != 0)
-            if material not in self._materials[1:]
-        ]
-        self._check_room(new)
-        materials = [*self._materials, *new]
+        solid = np.flatnonzero(_native.leaf_counts(other.octree.words, other.octree.depth)[:, 1:].any(0)) + 1
+        materials = add_missing(self._materials, [other.materials[id_] for id_ in solid])
         ids = [0] * 256
-        for id_ in used[used[0] == 0 :] if used else ():
+        for id_ in solid:
             ids[id_] = materials.index(other.materials[id_], 1)
         self._check_fit(self._native.paste(other.octree.words, other.octree.depth, other.size, corner, quarters, ids))
         self._materials = materials
@@ -364,10 +353,7 @@ class World:
             )
         patch = self._native.commit()
         if patch is None:
-            raise DoesNotFitError(
-                f"there is no room for the word of a root in the {self._limit:,} words of the world's memory; "
-                "release older roots, or make the world with more words"
-            )
+            raise self._no_room("the word of the root")
         return Patch(*patch)
 
     @property
@@ -408,35 +394,17 @@ class World:
         return WorldFigures(*self._native.figures())
 
     def _change(self, shape: Shape, material: int, *, solid_only: bool) -> None:
-        chosen = self._material(material)
-        match shape:
-            case Box():
-                fits = self._native.change_box(shape.low, shape.high, chosen, solid_only)
-            case Sphere():
-                fits = self._native.change_ball(
-                    in_units(shape.centre), int(shape.radius * POSITION_UNITS), chosen, solid_only
-                )
-            case Capsule():
-                fits = self._native.change_capsule(
-                    in_units(shape.start), in_units(shape.end), int(shape.radius * POSITION_UNITS), chosen, solid_only
-                )
-            case _:
-                raise TypeError(f"shape must be a Box, a Sphere or a Capsule, not {shown(shape)}")
-        self._check_fit(fits)
+        self._check_fit(change_shape(self._native, shape, self._material(material), solid_only=solid_only))
 
     def _material(self, material: object) -> int:
         return whole("material", material, 0, len(self._materials) - 1)
 
-    def _check_room(self, new: list[Material]) -> None:
-        if new and len(self._materials) + len(new) > MATERIAL_LIMIT + 1:
-            raise DoesNotFitError(
-                f"the world has {len(self._materials) - 1} materials and can have {MATERIAL_LIMIT}: there is no room "
-                f"for {new[0].name!r}"
-            )
-
     def _check_fit(self, fits: bool) -> None:
         if not fits:
-            raise DoesNotFitError(
-                f"the result of the edit does not fit the {self._limit:,} words of the world's memory; release older "
-                "roots, or make the world with more words"
-            )
+            raise self._no_room("the result of the edit")
+
+    def _no_room(self, what: str) -> DoesNotFitError:
+        return DoesNotFitError(
+            f"{what} does not fit the {self._limit:,} words of the world's memory; release older roots, or make the "
+            "world with more words"
+        )

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 GTKWAVE_MARKERS = 26
 """GTKWave marks so many times, A to Z."""
 
+_SURFER_MARKERS = 255
+
 # GTKWave's trace flags: how values are shown.
 _HEXADECIMAL, _UNSIGNED, _BINARY = 0x22, 0x24, 0x28
 _SHOWN = (
@@ -173,6 +175,6 @@ def _gtkwave_view(wave: Wave, path: Path, shown: list[tuple[Signal, int]]) -> st
 def _surfer_view(wave: Wave, shown: list[Signal]) -> str:
     # Its reader takes an array for a scope, in which the elements are [0], [1] and so on.
     lines = [f"variable_add {'.'.join(signal.scope)}.{signal.name.replace('[', '.[')}" for signal in shown]
-    lines += [f"marker_set word_{number} {time}" for number, time in enumerate(wave.words, 1)]
+    lines += [f"marker_set word_{number} {time}" for number, time in enumerate(wave.words[:_SURFER_MARKERS], 1)]
     lines += [f"cursor_set {wave.words[0]}"] if wave.words else []
     return "\n".join([*lines, "zoom_fit"]) + "\n"

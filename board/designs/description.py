@@ -105,7 +105,7 @@ def read_description(path: Path) -> dict[str, Any]:
     Raises
     ------
     ValueError
-        It is no description of a board, or its PLL does not give the clocks; one line, with the file.
+        It is no description of a board, or its PLL does not give the clocks; one line, with the file and the remedy.
     """
     try:
         text = path.read_bytes()
@@ -114,8 +114,12 @@ def read_description(path: Path) -> dict[str, Any]:
         _check_memory(described)
         board: dict[str, Any] = msgspec.json.decode(text)
     except OSError as error:
-        raise ValueError(f"{path}: {error.strerror}") from error
-    except ValueError as error:  # msgspec's are
+        raise ValueError(f"{path}: cannot be read: {error.strerror}; name the board.json of your board") from error
+    except msgspec.ValidationError as error:
+        raise ValueError(f"{path}: {error}; docs/board-files.md describes each key") from error
+    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+        raise ValueError(f"{path}: is not JSON: {error}; begin with a board.json of board/designs") from error
+    except ValueError as error:
         raise ValueError(f"{path}: {error}") from error
     return board
 

@@ -41,6 +41,7 @@ def test_no_other_list_has_the_boards():
         (48, (2, 5), "the PLL gives a bit clock of 120 MHz, not 125: clock_mhz 48 / .*; no dividers make 125 MHz"),
         (50, (1, 5), "a bit clock of 250 MHz, not 125: .*; take input_divider 2 and feedback_divider 5"),
         (12, (1, 10), "a bit clock of 120 MHz, not 125: .*; no dividers make 125 MHz of this oscillator"),
+        (403.125, (128, 40), "a bit clock of 125.977 MHz, not 125: .*; no dividers make 125 MHz of this oscillator"),
         (100, (4, 5), None),
         (62.5, (1, 2), None),
         (25, (16, 80), "clock_mhz 25 / input_divider 16 is below 3.125 MHz, .*; take input_divider 1 and feedback_"),
@@ -89,8 +90,27 @@ def test_a_description_with_a_mistake_is_refused_in_one_line(written, change, pr
     assert "\n" not in str(found.value)
 
 
+def test_an_sdram_may_hold_fewer_blocks_than_its_addresses_reach_and_not_more(tmp_path):
+    board = build.read_board("ulx3s-85f-sdram")
+    path = tmp_path / "board.json"
+    path.write_text(json.dumps(board | {"octree_blocks": 1 << 20}))
+    assert build.read_board(str(path))["octree_blocks"] == 1 << 20
+    path.write_text(json.dumps(board | {"octree_blocks": (1 << 20) + 1}))
+    with pytest.raises(ValueError, match="octree_blocks 1048577 does not go with BlockBits 20; take 1048576"):
+        build.read_board(str(path))
+
+
+def test_a_file_that_is_not_json(tmp_path):
+    path = tmp_path / "board.json"
+    for text in (b"", b'{"title": "U', b'{"title": "\xff"}'):
+        path.write_bytes(text)
+        with pytest.raises(ValueError, match=r"board\.json: is not JSON: .*; begin with a board\.json of") as found:
+            build.read_board(str(path))
+        assert "\n" not in str(found.value)
+
+
 def test_a_file_that_is_not_there(tmp_path):
-    with pytest.raises(ValueError, match=r"board\.json: No such file or directory$"):
+    with pytest.raises(ValueError, match=r"board\.json: cannot be read: No such .*; name the board\.json of"):
         build.read_board(str(tmp_path / "board.json"))
     with pytest.raises(KeyError, match="there is no board 'abacus'; there are icepi-zero, "):
         build.read_board("abacus")

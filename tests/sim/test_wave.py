@@ -34,6 +34,7 @@ def rom():
 RAYS = {
     "a miss that reads words": ((-40, 90, 100), (90, 3, 4)),
     "from within": ((200, 300, 150), (-3, 5, 7)),
+    "the longest direction of a register": ((-40, 200, 200), (32_767, 469, -938)),
     "a direction of 17 bits": ((-40, 200, 200), (70_001, 1_003, -2_005)),
     "a direction of 20 bits": ((900, 200, 200), (-1_048_575, 77_777, 2)),
     "along an axis": ((-16, 72, 72), (1, 0, 0)),
@@ -76,7 +77,14 @@ def test_the_lane_reads_the_words_of_the_model(rom, tmp_path, ray):
     stage = signal(read, "ray.stage")
     for number in range(STAGES):
         assert at(stage, times[0] + number * CLOCK) == number
-    assert at(stage, times[-1] + (STAGES - 2) * CLOCK) == 15  # the ray retires at stage 9
+    assert [at(stage, times[0] - clocks * CLOCK) for clocks in (3, 2, 1)] == [15, 10, 11]
+    # The ray retires at stage 9.
+    assert [at(stage, times[-1] + clocks * CLOCK) for clocks in (8, 9, 10)] == [8, 9, 15]
+    clock = signal(read, f"{LANE}.clk_i")
+    rises = [time for time, value in clock if value == "1"]
+    assert all(time % CLOCK == 0 for time in rises)
+    assert set(np.diff(rises)) == {CLOCK}
+    assert read.endtime == wave.end >= rises[-1]
 
 
 def test_the_signals_bear_the_names_of_the_source(rom):
@@ -86,6 +94,8 @@ def test_the_signals_bear_the_names_of_the_source(rom):
     assert wave.lane("decision.issues").width == 1
     scopes = {signal.scope[-1] for signal in wave.signals}
     assert {"u_lane", "u_times", "u_next_cell", "u_scheduler", "ray"} <= scopes
+    everything = {part for signal in wave.signals for part in (*signal.scope, signal.name)}
+    assert not [part for part in everything if "assert" in part or part == "reset_seen_q" or part[0].isupper()]
 
 
 def test_both_formats_hold_the_same(rom, tmp_path):
