@@ -20,6 +20,7 @@ import { FILLS, RULES } from "./voxrt/voxrt.js";
   camera: null,
 };
 export const LONGEST = 32_000; // characters: some programs cut longer ones
+export const LONGEST_UNPACKED = 4 * 2 ** 20; // bytes of a memory that a link carries
 const NUMBER = /^-?\d+(\.\d+)?$/;
 
 /** @param {Partial<Link>} link */ export function linkOf(link) {

@@ -11,6 +11,12 @@ import { save } from "./save.js";
 /** @param {Shown} memory */
 const packedText = async (memory) => (await import("./packed.js")).pack(manifestOf(memory), memory.words);
 
+/** @param {string} script */ async function fetched(script) {
+  const answer = await fetch(script);
+  if (!answer.ok) throw new Error(`${script}: the server answers ${answer.status}`);
+  return answer.text();
+}
+
 const WORDS = 8 * LONGEST; // more never fit
 const BRIEF = 1500; // milliseconds
 
@@ -60,10 +66,7 @@ export class Sharing {
   async #savePage() {
     const [memory, view] = [this.app.memory(), this.app.view()];
     if (!memory || !view) return;
-    const [script, packed] = await Promise.all([
-      fetch("voxrt-view.js").then((answer) => answer.text()),
-      packedText(memory),
-    ]);
+    const [script, packed] = await Promise.all([fetched("voxrt-view.js"), packedText(memory)]);
     save(
       new Blob([pageOf(memory.name, script, packed, cameraText(view))], { type: "text/html" }),
       `${memory.name}.html`,

@@ -1,6 +1,8 @@
 // What the page builds memories of: files that were dropped or chosen, examples, and what a link names.
 
-import { readLink } from "./links.js";
+import { boundedBytes } from "./bounded.js";
+import { nameOf } from "./folder.js";
+import { LONGEST_UNPACKED, readLink } from "./links.js";
 /** @import { Site } from "./app.js" @import { DroppedFile } from "./folder.js" */
 
 /** `example`: its name; `urls`: where the files are, in order. @typedef {{ files: DroppedFile[], example: string |
@@ -31,7 +33,7 @@ export async function sourceOfAddress({ hash, search }, site, onStage) {
   if (urls.length) return { source: await sourceOfUrls(urls, onStage), ...options };
   if (memory) {
     const { unpack } = await import("./packed.js");
-    return { source: { files: await unpack(memory), example: null }, ...options };
+    return { source: { files: await unpack(memory, LONGEST_UNPACKED), example: null }, ...options };
   }
   if (!scene && hash.length > 1)
     throw new Error("it names no scene: it was copied from a model that never left its owner's computer");
@@ -47,7 +49,7 @@ export async function sourceOfAddress({ hash, search }, site, onStage) {
     onStage(url);
     const bytes = await fetched(url, left);
     left -= bytes.length;
-    files.push({ name: decodeURIComponent(new URL(url, location.href).pathname.replace(/^.*\//, "")), bytes });
+    files.push({ name: nameOf(new URL(url, location.href)), bytes });
   }
   return { files, example: null, urls };
 }
@@ -57,17 +59,7 @@ export async function sourceOfAddress({ hash, search }, site, onStage) {
     throw new Error(`${url}: nothing came; its server must answer, and allow other pages to read it (CORS)`);
   });
   if (!answer.ok || !answer.body) throw new Error(`${url}: the server answers ${answer.status}`);
-  /** @type {Uint8Array<ArrayBuffer>[]} */ const parts = [];
-  let length = 0;
-  for (const reader = answer.body.getReader(); ; ) {
-    const { value } = await reader.read();
-    if (!value) break;
-    length += value.length;
-    if (length > most) {
-      reader.cancel();
-      throw new Error(`${url}: has more than ${MOST / 2 ** 20} MiB; load it down, and drop it on this page`);
-    }
-    parts.push(value);
-  }
-  return new Uint8Array(await new Blob(parts).arrayBuffer());
+  const bytes = await boundedBytes(answer.body, most);
+  if (!bytes) throw new Error(`${url}: has more than ${MOST / 2 ** 20} MiB; download it, and drop it on this page`);
+  return bytes;
 }
