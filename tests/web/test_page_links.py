@@ -120,7 +120,15 @@ def test_another_link_in_the_same_tab_shows_its_scene(browser: Browser) -> None:
 
 
 class SharingHandler(SimpleHTTPRequestHandler):
-    """A server of models; those below /open/ may be read by other pages."""
+    """A server of models; those below /open/ may be read by other pages, and those below /endless/ never come."""
+
+    ended = threading.Event()
+
+    def do_GET(self) -> None:
+        if self.path.startswith("/endless/"):
+            self.ended.wait()
+        else:
+            super().do_GET()
 
     def log_message(self, *_: object) -> None:
         """Print nothing."""
@@ -140,6 +148,7 @@ def models():
     with ThreadingHTTPServer(("127.0.0.1", 0), partial(SharingHandler, directory=str(EXAMPLES))) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         yield f"http://127.0.0.1:{server.server_port}"
+        SharingHandler.ended.set()
         server.shutdown()
 
 
@@ -166,6 +175,20 @@ def test_a_model_that_cannot_be_fetched_is_named(opened_browser: Browser, models
         assert reason in notice(opened_browser)
         assert path.split("/")[1] in notice(opened_browser)
     opened_browser.faults()
+
+
+def test_a_server_that_never_answers_keeps_nobody_waiting(browser: Browser, models: str) -> None:
+    """Its loading ends by Cancel, and by the choice of something else."""
+    loading = "document.querySelector('#notice').innerText.includes('Loading')"
+    for choice in ("#cancel", "[data-example=house]"):
+        browser.open("about:blank")
+        browser.open(f"{browser.address}?model={models}/endless/planet.glb")
+        assert browser.until(f"{loading} && document.querySelector('#cancel').checkVisibility()")
+        browser.click(choice)
+        assert browser.until("document.querySelector('#notice').hidden")
+    assert browser.until(shown("house", 7)), notice(browser)
+    assert browser.run("return location.search + location.hash") == ""
+    assert notice(browser) == ""
 
 
 PICTURE = "document.querySelector('#picture')"
