@@ -81,6 +81,7 @@ BAD = {
     "scene=castle": 'no example "castle"',
     "depth=7&camera=1,2,3,0,0,35,9": "names no scene",
     "scene=planet&depth=13": 'part "depth=13"',
+    "scene=planet&depth=2": 'part "depth=2"',
     "scene=planet&camera=1,2,3": 'part "camera=1,2,3"',
     "scene=planet&bake=1,2,3,4": 'part "bake=',
     "scene=planet&view=top": 'part "view=top"',
