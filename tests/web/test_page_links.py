@@ -223,3 +223,21 @@ def test_a_page_of_one_file_shows_the_view_without_a_server(
     assert other_browser.until(rest)
     assert other_browser.run(f"return {canvas}.toDataURL()") != turned
     assert other_browser.faults() == []
+
+
+def test_names_of_files_and_materials_stay_text(browser: Browser, other_browser: Browser, tmp_path: Path) -> None:
+    """On the page, in a link, and in a page of one file."""
+    name, material = "<i>&amp;", "</script><i>-->"
+    for file in ("house.obj", "house.mtl"):
+        text = (EXAMPLES / file).read_text().replace("tiles", material)
+        (tmp_path / file.replace("house.obj", f"{name}.obj")).write_text(text)
+    opened(browser)
+    show(browser, tmp_path / f"{name}.obj", tmp_path / "house.mtl")
+    opened(other_browser, copied_link(browser), name, 7)
+    saved(browser, tmp_path / "page", "#save-page", "_i_&amp;.html")
+    assert browser.run("return document.querySelector('i')") is None
+    assert other_browser.run("return document.querySelector('i')") is None
+    other_browser.open((tmp_path / "page" / "_i_&amp;.html").as_uri())
+    assert other_browser.until(f"{ELEMENT}.getAttribute('aria-busy') === 'false'"), other_browser.faults()
+    assert other_browser.run("return [document.title, document.querySelector('i')]") == [name, None]
+    assert other_browser.faults() == []
