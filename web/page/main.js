@@ -102,7 +102,11 @@ function inspect(app) {
     if (message !== "cancelled") notice("error", "This cannot be saved", message); // another memory came
   };
   $("save").onclick = () => import("./stills.js").then(({ savePicture }) => savePicture(app)).catch(fail);
-  $("turntable").onclick = () => import("./turntable.js").then(({ record }) => record(app)).catch(fail);
+  $("turntable").onclick = async () => {
+    $("turntable").disabled = true;
+    await import("./turntable.js").then(({ record }) => record(app)).catch(fail);
+    $("turntable").disabled = false;
+  };
 }
 
 /** Keys, gestures and buttons move the camera. @param {App} app */
