@@ -1,11 +1,10 @@
 // Links to a scene of the server and a view of it, in the part of the address after "#", beside the token.
 
 import { cameraText, readCamera } from "./camera_text.js";
+import { copyAddress } from "./copy_address.js";
 import { $ } from "./elements.js";
 import { notice } from "./notices.js";
 /** @import { App } from "./app.js" @import { Placed } from "./camera_text.js" @import { State } from "./protocol.js" */
-
-const BRIEF = 1500; // milliseconds
 
 export class SceneLink {
   /** @type {{ scene: string, camera: Placed | null } | null} what the address names, until it is shown */ #wanted =
@@ -43,14 +42,6 @@ export class SceneLink {
     const fields = new URLSearchParams(location.hash.slice(1));
     fields.set("scene", scene.name);
     fields.set("camera", cameraText(pose));
-    history.replaceState(null, "", `#${fields}`);
-    const copied = await navigator.clipboard?.writeText(location.href).then(
-      () => true,
-      () => false,
-    );
-    $("copy").textContent = copied ? "Copied" : "In the address bar";
-    setTimeout(() => {
-      $("copy").textContent = "Copy link";
-    }, BRIEF);
+    await copyAddress(`#${fields}`);
   }
 }

@@ -1,6 +1,7 @@
 // A memory packed for a link and unpacked again, in Node. A job: {files, depth, bake}
 import { readFile } from "node:fs/promises";
 import { basename } from "node:path";
+import { deflateSync } from "node:zlib";
 import { answer, fileOf, importOf, sha } from "./jobs.mjs";
 
 globalThis.self = globalThis;
@@ -25,6 +26,8 @@ await answer(async ({ files, depth, bake = null }) => {
   const damaged = await Promise.all(
     [text.slice(0, -9), text.slice(9), `${text.slice(0, 50)}A${text.slice(51)}`, `${text}$`, ""].map((one) => unpack(one).then(() => null, ({ message }) => message)),
   );
+  const bomb = Buffer.from(deflateSync(new Uint8Array(2 ** 24))).toString("base64url");
+  const refused = await unpack(bomb, 2 ** 20).then(() => null, ({ message }) => message);
   const { materials, lighting, grid, view } = memory;
-  return { name, length: text.length, mem: sha(memBytes(memory.words)), depth: memory.depth, materials, lighting, grid, view, damaged };
+  return { name, length: text.length, mem: sha(memBytes(memory.words)), depth: memory.depth, materials, lighting, grid, view, damaged, refused };
 });

@@ -45,6 +45,7 @@ def address(tmp_path: Path):
     manual = (ROOT / "docs" / "embedding.md").read_text(encoding="utf-8")
     (page,) = re.findall(r"```html\n(<!doctype.*?)```", manual, re.DOTALL)
     (tmp_path / "index.html").write_text(page)
+    (tmp_path / "blank.html").write_text('<!doctype html><script type="module" src="voxrt-view.js"></script>')
     (tmp_path / "favicon.ico").touch()
     with ThreadingHTTPServer(("127.0.0.1", 0), partial(QuietHandler, directory=str(tmp_path))) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
@@ -72,6 +73,31 @@ def test_another_memory_takes_its_place(browser: Browser, address: str, tmp_path
     browser.run(f"{ELEMENT}.setAttribute('src', 'other.mem')")
     assert browser.until(f"{CANVAS}.getAttribute('aria-label').startsWith('other') && {RESTS}")
     browser.run(f"{ELEMENT}.remove()")
+    assert browser.faults() == []
+
+
+MOVED = """
+    window.workers = new Set();
+    window.Worker = class extends Worker {
+        constructor(...how) { super(...how); window.workers.add(this); }
+        terminate() { window.workers.delete(this); super.terminate(); }
+    };
+    const element = Object.assign(document.createElement("voxrt-view"), { style: "width: 320px" });
+    element.setAttribute("src", "world.mem?version=2");
+    document.body.append(element);
+    document.body.appendChild(document.createElement("div")).append(element);
+"""
+
+
+def test_an_element_that_is_moved_while_it_loads_shows_one_memory(browser: Browser, address: str) -> None:
+    """No worker remains of what it left; an address with a query has its manifest, with the query, beside it."""
+    browser.open("about:blank")
+    browser.open(f"{address}blank.html")
+    browser.run(MOVED)
+    assert browser.until(RESTS), browser.run(f"return {SAYS}")
+    assert browser.run(f"return {CANVAS}.getAttribute('aria-label')").startswith("world.")
+    browser.run(f"{ELEMENT}.remove()")
+    assert browser.until("window.workers.size === 0")
     assert browser.faults() == []
 
 

@@ -46,6 +46,7 @@ def test_a_packed_memory_is_the_memory(tmp_path: Path, files: tuple[str, ...], d
     ]
     assert (found["lighting"] or {}).get("flat", False) == bool(options)
     assert all("damaged or cut off" in one for one in found["damaged"]), json.dumps(found["damaged"])
+    assert "more than 1 MiB" in found["refused"]
 
 
 def test_a_link_takes_few_bits_per_word() -> None:

@@ -81,6 +81,7 @@ BAD = {
     "scene=castle": 'no example "castle"',
     "depth=7&camera=1,2,3,0,0,35,9": "names no scene",
     "scene=planet&depth=13": 'part "depth=13"',
+    "scene=planet&depth=2": 'part "depth=2"',
     "scene=planet&camera=1,2,3": 'part "camera=1,2,3"',
     "scene=planet&bake=1,2,3,4": 'part "bake=',
     "scene=planet&view=top": 'part "view=top"',
@@ -120,7 +121,15 @@ def test_another_link_in_the_same_tab_shows_its_scene(browser: Browser) -> None:
 
 
 class SharingHandler(SimpleHTTPRequestHandler):
-    """A server of models; those below /open/ may be read by other pages."""
+    """A server of models; those below /open/ may be read by other pages, and those below /endless/ never come."""
+
+    ended = threading.Event()
+
+    def do_GET(self) -> None:
+        if self.path.startswith("/endless/"):
+            self.ended.wait()
+        else:
+            super().do_GET()
 
     def log_message(self, *_: object) -> None:
         """Print nothing."""
@@ -140,6 +149,7 @@ def models():
     with ThreadingHTTPServer(("127.0.0.1", 0), partial(SharingHandler, directory=str(EXAMPLES))) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         yield f"http://127.0.0.1:{server.server_port}"
+        SharingHandler.ended.set()
         server.shutdown()
 
 
@@ -166,6 +176,20 @@ def test_a_model_that_cannot_be_fetched_is_named(opened_browser: Browser, models
         assert reason in notice(opened_browser)
         assert path.split("/")[1] in notice(opened_browser)
     opened_browser.faults()
+
+
+def test_a_server_that_never_answers_keeps_nobody_waiting(browser: Browser, models: str) -> None:
+    """Its loading ends by Cancel, and by the choice of something else."""
+    loading = "document.querySelector('#notice').innerText.includes('Loading')"
+    for choice in ("#cancel", "[data-example=house]"):
+        browser.open("about:blank")
+        browser.open(f"{browser.address}?model={models}/endless/planet.glb")
+        assert browser.until(f"{loading} && document.querySelector('#cancel').checkVisibility()")
+        browser.click(choice)
+        assert browser.until("document.querySelector('#notice').hidden")
+    assert browser.until(shown("house", 7)), notice(browser)
+    assert browser.run("return location.search + location.hash") == ""
+    assert notice(browser) == ""
 
 
 PICTURE = "document.querySelector('#picture')"
@@ -198,4 +222,22 @@ def test_a_page_of_one_file_shows_the_view_without_a_server(
     other_browser.draws()
     assert other_browser.until(rest)
     assert other_browser.run(f"return {canvas}.toDataURL()") != turned
+    assert other_browser.faults() == []
+
+
+def test_names_of_files_and_materials_stay_text(browser: Browser, other_browser: Browser, tmp_path: Path) -> None:
+    """On the page, in a link, and in a page of one file."""
+    name, material = "<i>&amp;", "</script><i>-->"
+    for file in ("house.obj", "house.mtl"):
+        text = (EXAMPLES / file).read_text().replace("tiles", material)
+        (tmp_path / file.replace("house.obj", f"{name}.obj")).write_text(text)
+    opened(browser)
+    show(browser, tmp_path / f"{name}.obj", tmp_path / "house.mtl")
+    opened(other_browser, copied_link(browser), name, 7)
+    saved(browser, tmp_path / "page", "#save-page", "_i_&amp;.html")
+    assert browser.run("return document.querySelector('i')") is None
+    assert other_browser.run("return document.querySelector('i')") is None
+    other_browser.open((tmp_path / "page" / "_i_&amp;.html").as_uri())
+    assert other_browser.until(f"{ELEMENT}.getAttribute('aria-busy') === 'false'"), other_browser.faults()
+    assert other_browser.run("return [document.title, document.querySelector('i')]") == [name, None]
     assert other_browser.faults() == []

@@ -6,7 +6,7 @@ export class FileError extends Error {
   name = "FileError";
 }
 
-/** @param {string} name */ export const stem = (name) => name.slice(0, name.lastIndexOf("."));
+/** @param {string} name */ export const stem = (name) => name.replace(/\.[^.]*$/, "");
 
 /** @param {string} name */ export const extension = (name) => name.slice(name.lastIndexOf(".") + 1).toLowerCase();
 
@@ -17,6 +17,9 @@ export class FileError extends Error {
     return name; // a plain name with "%"
   }
 }
+
+/** The name of the file at an address. @param {URL} url */
+export const nameOf = ({ pathname }) => decoded(pathname.replace(/^.*\//, ""));
 
 export class Folder {
   /** @param {DroppedFile[]} files */ constructor(files) {

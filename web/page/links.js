@@ -1,7 +1,7 @@
 // Links to a scene and its view: the part of an address after "#". The scene is an example, a file at the address of
 // ?model=, or a packed memory.
 
-import { cameraText, readCamera } from "./camera_text.js";
+import { cameraText, numbersOf, readCamera } from "./camera_text.js";
 import { FILLS, RULES } from "./voxrt/voxrt.js";
 /** @import { Placed } from "./camera_text.js" @import { Placing } from "./placing.js" */
 /** @import { Daylight, Fill, Rule } from "./voxrt/voxrt.js" */
@@ -20,7 +20,7 @@ import { FILLS, RULES } from "./voxrt/voxrt.js";
   camera: null,
 };
 export const LONGEST = 32_000; // characters: some programs cut longer ones
-const NUMBER = /^-?\d+(\.\d+)?$/;
+export const LONGEST_UNPACKED = 4 * 2 ** 20; // bytes of a memory that a link carries
 
 /** @param {Partial<Link>} link */ export function linkOf(link) {
   const { scene, memory, depth, bake, words, up, unit, fill, rule, camera } = { ...PLAIN, ...link };
@@ -44,12 +44,12 @@ const NUMBER = /^-?\d+(\.\d+)?$/;
 export function readLink(hash) {
   /** @type {Link} */ const link = { ...PLAIN };
   for (const [name, text] of new URLSearchParams(hash.slice(1))) {
-    const parts = text.split(",").map((part) => (NUMBER.test(part) ? Number(part) : Number.NaN));
+    const parts = numbersOf(text);
     /** @param {number} length */ const isList = (length) => parts.length === length && parts.every(Number.isFinite);
     /** @param {number} low @param {number} high */ const isWhole = (low, high) =>
       isList(1) && Number.isInteger(parts[0]) && parts[0] >= low && parts[0] <= high;
     if (name === "scene" || name === "memory") link[name] = text;
-    else if (name === "depth" && isWhole(1, 12)) link.depth = parts[0];
+    else if (name === "depth" && isWhole(3, 12)) link.depth = parts[0];
     else if (name === "words" && isWhole(1, 2 ** 32 - 1)) link.words = parts[0];
     else if (name === "up" && (text === "y" || text === "z")) link.up = text;
     else if (name === "unit" && isList(1) && parts[0] > 0) link.unit = parts[0];

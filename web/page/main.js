@@ -22,21 +22,46 @@ function forgetSource(app) {
   app.panel.choices.options = { ...app.panel.choices.options, up: null, unit: null };
 }
 
-/** @param {App} app @param {Site} site */ function openScenes(app, site) {
-  acceptFiles(async (files) => {
+/** Opens what was chosen last: a choice ends the loading of the one before. */
+class Opening {
+  #current = new AbortController();
+
+  /** Reports an error as a notice of that title. @param {string} title @param {(signal: AbortSignal) => Promise<void>}
+   * open */
+  async start(title, open) {
+    this.cancel();
+    const { signal } = this.#current;
+    try {
+      await open(signal);
+    } catch (error) {
+      if (!signal.aborted) notice("error", title, /** @type {Error} */ (error).message);
+    }
+  }
+
+  cancel() {
+    this.#current.abort();
+    this.#current = new AbortController();
+  }
+}
+
+/** @param {App} app @param {Site} site @param {Opening} opening */ function openScenes(app, site, opening) {
+  acceptFiles((files) => {
     if (!files.length) return;
-    forgetSource(app);
-    await app.open(await sourceOfFiles(files));
+    opening.start("The files cannot be read", async (signal) => {
+      const source = await sourceOfFiles(files);
+      signal.throwIfAborted();
+      forgetSource(app);
+      await app.open(source);
+    });
   });
   $("open").onclick = () => $("files").click();
   for (const [name, { title }] of Object.entries(site.examples)) {
-    const open = async () => {
-      const source = await sourceOfExample(name, site);
+    const open = async (/** @type {AbortSignal} */ signal) => {
+      const source = await sourceOfExample(name, site, signal);
       forgetSource(app);
       await app.open(source);
     };
-    const fail = (/** @type {Error} */ { message }) => notice("error", "The example cannot be loaded", message);
-    const chip = makeButton($("examples"), title, () => open().catch(fail));
+    const chip = makeButton($("examples"), title, () => opening.start("The example cannot be loaded", open));
     chip.dataset.example = name;
     pressed(chip, false);
   }
@@ -77,7 +102,11 @@ function inspect(app) {
     if (message !== "cancelled") notice("error", "This cannot be saved", message); // another memory came
   };
   $("save").onclick = () => import("./stills.js").then(({ savePicture }) => savePicture(app)).catch(fail);
-  $("turntable").onclick = () => import("./turntable.js").then(({ record }) => record(app)).catch(fail);
+  $("turntable").onclick = async () => {
+    $("turntable").disabled = true;
+    await import("./turntable.js").then(({ record }) => record(app)).catch(fail);
+    $("turntable").disabled = false;
+  };
 }
 
 /** Keys, gestures and buttons move the camera. @param {App} app */
@@ -106,18 +135,21 @@ async function compile() {
   );
 }
 
-/** Show what the address names. @param {App} app @param {Site} site */ async function openAddress(app, site) {
+/** Show what the address names. @param {App} app @param {Site} site @param {Opening} opening */
+function openAddress(app, site, opening) {
   addEventListener("hashchange", () => location.reload()); // another link in the same tab
-  try {
-    const onStage = (/** @type {string} */ text) => notice("progress", "Loading", text);
-    const { source, camera, ...options } = await sourceOfAddress(location, site, onStage);
+  opening.start("This link cannot be shown", async (signal) => {
+    signal.addEventListener("abort", dismiss);
+    const cancel = () => opening.cancel();
+    const onStage = (/** @type {string} */ text) => notice("progress", "Loading", text, { cancel });
+    const { source, camera, ...options } = await sourceOfAddress(location, site, onStage, signal);
+    signal.throwIfAborted();
+    signal.removeEventListener("abort", dismiss);
     dismiss();
     app.panel.set(options);
     await app.open(source);
-    if (camera) app.viewpoint.change((now) => ({ ...now, ...camera }));
-  } catch (error) {
-    notice("error", "This link cannot be shown", /** @type {Error} */ (error).message);
-  }
+    if (camera && app.source === source) app.viewpoint.change((now) => ({ ...now, ...camera }));
+  });
 }
 
 async function start() {
@@ -125,11 +157,12 @@ async function start() {
   const [module, site] = await Promise.all([compile(), fetch("site.json").then((answer) => answer.json())]);
   const app = new App(module, site);
   new HardwarePanel(app, module);
-  openScenes(app, site);
+  const opening = new Opening();
+  openScenes(app, site, opening);
   inspect(app);
   offerDownloads(app);
   const pilot = steer(app);
-  await openAddress(app, site);
+  openAddress(app, site, opening);
   const animate = () => {
     requestAnimationFrame(animate);
     app.viewpoint.step(pilot);

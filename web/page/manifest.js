@@ -58,7 +58,7 @@ const isLighting = isShape(Object.fromEntries(Object.entries(LIGHTING).map(([nam
   words: isWhole(1, 2 ** 32),
   materials: isMaterials,
   objects: isList(isObject),
-  warnings: isList(isObject),
+  warnings: isList(isShape({ kind: isText, message: isText, count: isKnown(isWhole(0, HIGHEST)) })),
   world: isOptional(isWorld),
   lighting: isOptional(isLighting),
   view: isOptional(isView),

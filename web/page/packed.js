@@ -5,6 +5,7 @@
 // is odd: the rest is how many blocks it is before (even) or behind (odd) the block after all that were named so far,
 // so that most are 1. The manifest stands before the words; both begin with their length.
 
+import { boundedBytes } from "./bounded.js";
 import { memBytes } from "./memory.js";
 import { isLeaf, leaf } from "./voxrt/words.js";
 /** @import { DroppedFile } from "./folder.js" */
@@ -13,8 +14,7 @@ const BLOCK = 8; // words
 const LONGEST = 5; // bytes of a number
 
 /** @param {Uint8Array<ArrayBuffer>} bytes @param {CompressionStream | DecompressionStream} stream */
-const through = async (bytes, stream) =>
-  new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
+const through = (bytes, stream) => new Blob([bytes]).stream().pipeThrough(stream);
 
 /** @param {Uint8Array} bytes */ function textOf(bytes) {
   let text = "";
@@ -48,16 +48,20 @@ const through = async (bytes, stream) =>
     put(2 * (before < 0 ? -2 * before - 1 : 2 * before) + 1);
     next = Math.max(next, word + BLOCK);
   }
-  return textOf(await through(bytes.subarray(0, at), new CompressionStream("deflate")));
+  const short = through(bytes.subarray(0, at), new CompressionStream("deflate"));
+  return textOf(new Uint8Array(await new Response(short).arrayBuffer()));
 }
 
-/** The files of a packed memory: it, and its manifest. @param {string} text @returns {Promise<DroppedFile[]>} */
-export async function unpack(text) {
+/** The files of a packed memory: it, and its manifest. A few bytes can unpack to many, so strangers' texts need a
+ * limit. @param {string} text @param {number} [most] bytes that are unpacked @returns {Promise<DroppedFile[]>} */
+export async function unpack(text, most = Infinity) {
   try {
-    return read(await through(bytesOf(text), new DecompressionStream("deflate")));
+    const bytes = await boundedBytes(through(bytesOf(text), new DecompressionStream("deflate")), most);
+    if (bytes) return read(bytes);
   } catch {
     throw new Error("it is damaged or cut off; copy it again");
   }
+  throw new Error(`it unpacks to more than ${most / 2 ** 20} MiB, more than links carry`);
 }
 
 /** @param {Uint8Array<ArrayBuffer>} bytes */ function read(bytes) {

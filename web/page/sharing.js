@@ -1,6 +1,7 @@
 // "Copy link", and "Save as one page": a file with the memory and all that shows it, which opens without a server.
 
 import { cameraText } from "./camera_text.js";
+import { copyAddress, sayBriefly } from "./copy_address.js";
 import { manifestOf } from "./downloads.js";
 import { $ } from "./elements.js";
 import { LONGEST, linkOf } from "./links.js";
@@ -11,8 +12,13 @@ import { save } from "./save.js";
 /** @param {Shown} memory */
 const packedText = async (memory) => (await import("./packed.js")).pack(manifestOf(memory), memory.words);
 
+/** @param {string} script */ async function fetched(script) {
+  const answer = await fetch(script);
+  if (!answer.ok) throw new Error(`${script}: the server answers ${answer.status}`);
+  return answer.text();
+}
+
 const WORDS = 8 * LONGEST; // more never fit
-const BRIEF = 1500; // milliseconds
 
 export class Sharing {
   /** @type {{ memory: Shown, packed: string | null } | null} */ #packed = null;
@@ -51,30 +57,18 @@ export class Sharing {
     const built = memory.fixed ? {} : { ...options, depth: memory.depth, words: budget };
     const packed = this.#isPublic() ? null : await this.#pack(memory);
     const link = linkOf(packed ? { memory: packed, camera: view } : { ...built, scene: source?.example, camera: view });
-    if (!this.#isPublic() && (packed === null || link.length > LONGEST)) return this.#say("Too large for a link");
-    history.replaceState(null, "", `${location.pathname}${search}${link}`);
-    const copied = navigator.clipboard?.writeText(location.href);
-    this.#say((await copied?.then(() => true).catch(() => false)) ? "Copied" : "In the address bar");
+    if (!this.#isPublic() && (packed === null || link.length > LONGEST)) return sayBriefly("Too large for a link");
+    await copyAddress(`${location.pathname}${search}${link}`);
   }
 
   async #savePage() {
     const [memory, view] = [this.app.memory(), this.app.view()];
     if (!memory || !view) return;
-    const [script, packed] = await Promise.all([
-      fetch("voxrt-view.js").then((answer) => answer.text()),
-      packedText(memory),
-    ]);
+    const [script, packed] = await Promise.all([fetched("voxrt-view.js"), packedText(memory)]);
     save(
       new Blob([pageOf(memory.name, script, packed, cameraText(view))], { type: "text/html" }),
       `${memory.name}.html`,
     );
-  }
-
-  /** @param {string} text */ #say(text) {
-    $("copy").textContent = text;
-    setTimeout(() => {
-      $("copy").textContent = "Copy link";
-    }, BRIEF);
   }
 }
 

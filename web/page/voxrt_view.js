@@ -7,7 +7,7 @@ import { BandPicture } from "./band_picture.js";
 import { measure } from "./camera.js";
 import { readCamera } from "./camera_text.js";
 import { firstView, limitOf } from "./first_view.js";
-import { stem } from "./folder.js";
+import { nameOf, stem } from "./folder.js";
 import { FrameRequests } from "./frame_requests.js";
 import { Gestures } from "./gestures.js";
 import { FIRST_LOOK, nextLook, shadingOf } from "./looks.js";
@@ -40,14 +40,16 @@ let compiled = () => {
 };
 
 /** @param {string} src */ async function fetchMemory(src) {
-  const manifest = src.replace(/(\.mem)?$/, ".json");
-  const [mem, beside] = await Promise.all([fetch(src), fetch(manifest)]);
+  const url = new URL(src, document.baseURI);
+  const manifest = new URL(url);
+  manifest.pathname = url.pathname.replace(/(\.mem)?$/, ".json");
+  const [mem, beside] = await Promise.all([fetch(url), fetch(manifest)]);
   if (!mem.ok) throw new Error(`${src}: the server answers ${mem.status}`);
-  const file = async (/** @type {Response} */ answer) => ({
-    name: decodeURIComponent(new URL(answer.url).pathname.replace(/^.*\//, "")),
+  const file = async (/** @type {URL} */ from, /** @type {Response} */ answer) => ({
+    name: nameOf(from),
     bytes: new Uint8Array(await answer.arrayBuffer()),
   });
-  return Promise.all(beside.ok ? [file(mem), file(beside)] : [file(mem)]);
+  return Promise.all(beside.ok ? [file(url, mem), file(manifest, beside)] : [file(url, mem)]);
 }
 
 /** Wait until some of an element can be seen. @param {Element} one @returns {Promise<void>} */
@@ -65,7 +67,7 @@ class VoxrtView extends HTMLElement {
   static observedAttributes = ["src", "packed", "camera"];
   #style = document.createElement("style");
   #status = document.createElement("p");
-  #start = 0; // changes when another memory has to be shown
+  #start = 0; // counts connections and memories: what was started before the last one is no longer wanted
   /** @type {Painter | null} */ #painter = null;
 
   constructor() {
@@ -76,19 +78,19 @@ class VoxrtView extends HTMLElement {
   }
 
   connectedCallback() {
-    const start = ++this.#start;
-    this.#painter?.stop();
-    this.#painter = null;
+    this.disconnectedCallback();
+    const start = this.#start;
     this.#open(start).catch(({ message }) => start === this.#start && this.#say(message));
   }
 
   disconnectedCallback() {
-    this.#start = 0;
+    this.#start++;
     this.#painter?.stop();
+    this.#painter = null;
   }
 
   attributeChangedCallback() {
-    if (this.#start) this.connectedCallback();
+    if (this.isConnected && this.#start) this.connectedCallback();
   }
 
   /** @param {number} start */ async #open(start) {
@@ -105,12 +107,16 @@ class VoxrtView extends HTMLElement {
     const look = nextLook(FIRST_LOOK, memory, null, true);
     const script = URL.createObjectURL(new Blob([paintScript], { type: "text/javascript" }));
     const painter = new Painter(module, script);
-    await painter.load(memory, shadingOf(memory, look));
-    URL.revokeObjectURL(script);
-    const { outline } = await painter.census();
-    if (start !== this.#start) return painter.stop();
-    this.#painter = painter;
-    this.#show(painter, { ...memory, bounds: boundsOf(outline) ?? memory.bounds }, look.background);
+    try {
+      await painter.load(memory, shadingOf(memory, look));
+      const { outline } = await painter.census();
+      if (start !== this.#start) return;
+      this.#painter = painter;
+      this.#show(painter, { ...memory, bounds: boundsOf(outline) ?? memory.bounds }, look.background);
+    } finally {
+      URL.revokeObjectURL(script);
+      if (this.#painter !== painter) painter.stop();
+    }
   }
 
   /** @param {Painter} painter @param {Shown} memory @param {number[]} background */
@@ -132,7 +138,7 @@ class VoxrtView extends HTMLElement {
     frames.change();
     const gestures = steer(canvas, viewpoint, memory, () => frames.size);
     const animate = () => {
-      if (this.#painter !== painter || !this.#start) return;
+      if (this.#painter !== painter) return;
       requestAnimationFrame(animate);
       if (this.clientWidth && this.clientHeight) viewpoint.step({ gestures, flight: STILL });
     };

@@ -20,7 +20,7 @@ export class WarningList {
       memory.warnings.map((warning) => this.#sentence(warning, memory)).map((one) => [one.text, one]),
     );
     const found = [...sentences.values()].sort((a, b) => Number(Boolean(b.mend)) - Number(Boolean(a.mend)));
-    const all = [...this.#ruin(memory), ...found].map((one) => this.#row(one));
+    const all = [...this.#ruin(memory), ...found].map((one) => this.#row(one, memory));
     const rest = all.splice(MOST);
     const more = element("details", {}, element("summary", {}, `${rest.length} more`), element("ul", {}, ...rest));
     $("warnings").replaceChildren(...all, ...(rest.length ? [element("li", {}, more)] : []));
@@ -42,24 +42,22 @@ export class WarningList {
     const list = message.slice(message.indexOf(": ") + 2);
     const names = message.match(/\((.+)\): build/)?.[1];
     /** @type {Record<string, Sentence>} */ const known = {
-      "no-voxels": {
-        text: `Too small to show at ${side(memory.depth)}: ${list}.`,
-        ...(memory.fixed ? {} : this.#resolve(memory.depth + 1)),
-      },
-      "open-surface": { text: "Open parts, like a room without a front, are hollow.", ...this.#fill("solid", memory) },
-      "mostly-filled": { text: `Open parts were filled: ${names}.`, ...this.#fill("surface", memory) },
-      "one-sided": { text: "Some parts have no clear inside; they were filled.", ...this.#fill("surface", memory) },
+      "no-voxels": { text: `Too small to show at ${side(memory.depth)}: ${list}.`, ...this.#resolve(memory.depth + 1) },
+      "open-surface": { text: "Open parts, like a room without a front, are hollow.", ...this.#fill("solid") },
+      "mostly-filled": { text: `Open parts were filled: ${names}.`, ...this.#fill("surface") },
+      "one-sided": { text: "Some parts have no clear inside; they were filled.", ...this.#fill("surface") },
       "up-axis": { text: "It seems to lie on its back.", label: "Stand it up", mend: () => this.#choose({ up: "z" }) },
       "turned-pieces": { text: TURNED },
       "turned-faces": { text: TURNED },
       "default-material": { text: "Parts without a material are grey." },
     };
     const times = count > 1 ? ` (${count.toLocaleString("en")})` : "";
-    return known[kind] ?? { text: `${message[0].toUpperCase()}${message.slice(1)}${times}.` };
+    return Object.hasOwn(known, kind)
+      ? known[kind]
+      : { text: `${message.charAt(0).toUpperCase()}${message.slice(1)}${times}.` };
   }
 
-  /** @param {"solid" | "surface"} fill @param {Shown} memory */ #fill(fill, { fixed }) {
-    if (fixed) return {};
+  /** @param {"solid" | "surface"} fill */ #fill(fill) {
     return { label: fill === "solid" ? "Fill them" : "Keep them hollow", mend: () => this.#choose({ fill }) };
   }
 
@@ -76,8 +74,9 @@ export class WarningList {
     return { label: `Use ${side(depth)}`, mend };
   }
 
-  /** @param {Sentence} sentence */ #row({ text, label, mend }) {
-    const button = label && element("button", { type: "button", onclick: mend }, label);
+  /** A memory that was read cannot be built otherwise. @param {Sentence} sentence @param {Shown} memory */
+  #row({ text, label, mend }, { fixed }) {
+    const button = !fixed && label && element("button", { type: "button", onclick: mend }, label);
     return element("li", {}, element("span", {}, text), ...(button ? [button] : []));
   }
 }

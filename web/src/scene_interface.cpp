@@ -289,7 +289,7 @@ EXPORT(vx_scene_end) double vx_scene_end() {
 }
 
 /// Voxelizes the scene and builds its octree; returns 0. `fill`: 0 surface, 1 solid, 2 auto. `rule`: 0 touch, 1 centre,
-/// 2 half./// `colours`: 1 … 254.
+/// 2 half. `colours`: 1 … 254.
 EXPORT(vx_voxelize) int vx_voxelize(int depth, int fill, int rule, int colours) {
     return guarded([&] {
         if (depth < 1 || depth > 16)
