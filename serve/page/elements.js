@@ -4,7 +4,7 @@
  * | "sun-y" | "sun-z" | "sky" | "samples" | "frames" | "bounces" | "background"} Inputs */
 /** @typedef {{ picture: HTMLCanvasElement, "hardware-picture": HTMLCanvasElement, octants: SVGSVGElement, size:
  * HTMLSelectElement, up: HTMLSelectElement, unit: HTMLSelectElement, fill: HTMLSelectElement, rule: HTMLSelectElement, keys: HTMLDialogElement, advanced: HTMLDetailsElement } & Record<Inputs, HTMLInputElement> &
- * Record<"take" | "bake", HTMLButtonElement> & Record<"token-form" | "save-view", HTMLFormElement> &
+ * Record<"take" | "bake" | "turntable", HTMLButtonElement> & Record<"token-form" | "save-view", HTMLFormElement> &
  * Record<"hardware-progress" | "bitstream-progress", HTMLProgressElement>} Elements */
 
 /** The element of the page with an id. @template {string} I @param {I} id */
