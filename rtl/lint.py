@@ -85,6 +85,10 @@ def main() -> int:
             arguments = [f"-GLanes={lanes}", DESIGNS / "lint.vlt", *list_sources(), *designs]
             if not lint(f"{top} with {lanes} lanes", top, arguments):
                 return 1
+    designs = [DESIGNS / line for line in (DESIGNS / "ecp5_selftest.f").read_text().splitlines() if line.endswith(".sv")]
+    for top in ("ecp5_selftest", "ecp5_selftest_sdram"):
+        if not lint(top, top, [DESIGNS / "lint.vlt", *designs]):
+            return 1
     for wrapper in ("voxrt_pynq_z1", "voxrt_zynq_cached"):
         if not lint(f"wrapper {wrapper}", wrapper, [VIVADO / "lint.vlt", *list_sources(), VIVADO / f"{wrapper}.v"]):
             return 1

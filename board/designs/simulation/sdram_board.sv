@@ -16,6 +16,8 @@ module sdram_board #(
   parameter int unsigned RayClocks       = 1,
   parameter int unsigned BootBlockBits   = 12,
   parameter int unsigned PowerOnUs       = 200,
+  parameter int unsigned LineBits        = 20,
+  parameter int unsigned WindowBits      = 20,
   parameter int unsigned GapBits         = 22,
   parameter bit          ButtonsLow      = 1'b0,
   parameter int unsigned Leds            = 8,
@@ -38,6 +40,19 @@ module sdram_board #(
 
 `ifdef PLACED
   top u_board (
+`elsif SELFTEST
+  ecp5_selftest_sdram #(
+    .InputDivider(InputDivider),
+    .FeedbackDivider(FeedbackDivider),
+    .SystemDivider(SystemDivider),
+    .LineBits(LineBits),
+    .PowerOnUs(PowerOnUs),
+    .GapBits(GapBits),
+    .WindowBits(WindowBits),
+    .ButtonsLow(ButtonsLow),
+    .Leds(Leds),
+    .Highs(Highs)
+  ) u_board (
 `else
   ecp5_top_sdram #(
     .InputDivider(InputDivider),
