@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 from voxrt.board.designs.base_design import base_contents, find_slices
 from voxrt.board.designs.description import BIT_MHZ, VCO_MHZ, read_description
 from voxrt.board.designs.multiplier_registers import use_multiplier_registers
+from voxrt.board.designs.placement import crossing_delays, write_placement
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -251,6 +252,7 @@ def describe(board: Mapping[str, Any], name: str, seed: int, folder: Path) -> di
         **({"line_bits": board["line_bits"]} if "LineBits" in parameters(board) else {}),
         "seed": seed,
         "fmax_mhz": fmax,
+        "crossings_ns": crossing_delays(report, clocks),
         "utilisation": {
             cell: [count["used"], count["available"]] for cell, count in report["utilization"].items() if count["used"]
         },
@@ -315,7 +317,8 @@ def main() -> None:
     folder = options.folder / (f"{place.name}-selftest" if options.selftest else place.name)
     folder.mkdir(parents=True, exist_ok=True)
     described = build(options.name, folder, seed=options.seed, write_netlist=options.netlist, selftest=options.selftest)
-    print(json.dumps({key: described[key] for key in ("seed", "fmax_mhz", "utilisation")}))
+    print(json.dumps({key: described[key] for key in ("seed", "fmax_mhz", "crossings_ns", "utilisation")}))
+    write_placement(described, folder, place / "placements" / f"{name}-{described['seed']}.json.bz2")
     if options.keep:
         return
     (place / f"{name}.json").write_text(json.dumps(described, indent=1) + "\n")
