@@ -38,7 +38,7 @@ DEFAULT_SIZE = (640, 480)
 """Columns and rows of the frames until a client changes the size. Cameras of scenes are made for it."""
 
 _PATIENCE = 60.0  # seconds
-_SMALLER = 4  # a device whose frames may take longer begins with frames that have this part of columns and rows
+_SMALLER = 4  # what may take longer begins with frames that have this part of columns and rows
 
 EMPTY_SCENE = Scene(
     "nothing",
@@ -124,7 +124,7 @@ class Renderer:
     def check_scene(self, scene: Scene) -> None:
         """Refuse a scene that the device cannot hold or render; nothing is written."""
         self._memory.check(scene)
-        check_view(self._view_of(scene), self.device.identity)
+        check_view(self._view_of(scene, self.view.size), self.device.identity)
 
     async def load(self, scene: Scene, progress: Progress, check: Callable[[], None] = _ignore) -> None:
         """Load a scene while frames of the present one are rendered, and show it from the next frame on.
@@ -141,8 +141,8 @@ class Renderer:
         Raises
         ------
         Refused
-            The device cannot hold or render it, or its first frame exceeds the time limit of frames. The present scene
-            stays.
+            The device cannot hold or render it, or its first frame exceeds the limit of frames, also where it is
+            smaller. The present scene stays.
         DeviceError
             The device did not keep it; the present scene stays.
         """
@@ -257,9 +257,15 @@ class Renderer:
 
     def _render_first(self, scene: Scene, progress: Progress) -> None:
         progress("render", 0, 1)
-        view = self._view_of(scene)
         self._shown_frame = 0  # of the scene that was selected just now
-        self._first_frame = view, self._render(view)
+        size = self.view.size
+        view = self._view_of(scene, size)
+        try:
+            frame = self._render(view)
+        except TooSlow:
+            view = self._view_of(scene, _smaller_size(size, self.device.identity.width_step))
+            frame = self._render(view)
+        self._first_frame = view, frame
 
     async def _on_device(self, call: Callable[[], Result]) -> Result:
         # A call of the device goes on when its caller is cancelled, so it is shielded. The next call waits in the same
@@ -268,10 +274,9 @@ class Renderer:
         work.add_done_callback(_retrieve_error)
         return await asyncio.shield(work)
 
-    def _view_of(self, scene: Scene) -> View:
-        size = self.view.size
+    def _view_of(self, scene: Scene, size: tuple[int, int]) -> View:
         camera = refit(scene.camera, DEFAULT_SIZE, size) if scene.camera else frame_world(scene.depth, size)
-        view = replace(self.view, camera=camera, background=scene.background, frame=0)
+        view = replace(self.view, camera=camera, size=size, background=scene.background, frame=0)
         lighting = scene.lighting
         if lighting is None:
             side, farthest = 16 << scene.depth, self.device.identity.position_limit - 1
@@ -292,6 +297,10 @@ def _first_size(identity: Identity) -> tuple[int, int]:
     part = _SMALLER if identity.frame_seconds(DEFAULT_SIZE) > _PATIENCE else 1
     columns, rows = (min(side // part, most) for side, most in zip(DEFAULT_SIZE, identity.size, strict=True))
     return columns, rows
+
+
+def _smaller_size(size: tuple[int, int], width_step: int) -> tuple[int, int]:
+    return max(size[0] // (_SMALLER * width_step), 1) * width_step, max(size[1] // _SMALLER, 1)
 
 
 def _retrieve_error(work: asyncio.Future[Any]) -> None:

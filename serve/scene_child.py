@@ -18,7 +18,7 @@ import msgspec
 
 from voxrt.board.errors import Refused
 from voxrt.octree.camera import Camera, Lighting  # noqa: TC001 - msgspec resolves the annotations of this module
-from voxrt.serve.shown_text import shown_line
+from voxrt.serve.shown_text import shown_line, shown_warnings
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -53,6 +53,7 @@ class Described(msgspec.Struct, frozen=True, tag=True):
     lighting: Lighting | None
     roots: tuple[int, ...]
     period: float | None
+    warnings: tuple[str, ...]
 
 
 Message: TypeAlias = Stage | Problem | Described
@@ -91,10 +92,18 @@ def run_child(read: Callable[[Sequence[Path], Progress], Scene], files: Sequence
     except Exception as error:  # noqa: BLE001 - whatever it is, the client gets an answer
         refuse(f"the files cannot be read: {type(error).__name__}: {error}; please report this")
     else:
-        count, roots = len(scene.words), scene.roots
         _write(
             out,
-            Described(shown_line(scene.name), scene.depth, count, scene.camera, scene.lighting, roots, scene.period),
+            Described(
+                shown_line(scene.name),
+                scene.depth,
+                len(scene.words),
+                scene.camera,
+                scene.lighting,
+                scene.roots,
+                scene.period,
+                shown_warnings(scene.warnings),
+            ),
         )
         for array, kind in ((scene.colours, "u1"), (scene.mirrors, "u1"), (scene.words, "<u4")):
             out.write(array.astype(kind).tobytes())

@@ -111,6 +111,7 @@ class Session:
                 "size": DEFAULT_SIZE,
                 "frames": len(scene.roots),
                 "period": scene.period,
+                "warnings": scene.warnings,
             },
             "view": {
                 "camera": asdict(renderer.view.camera),

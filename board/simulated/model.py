@@ -141,7 +141,7 @@ class ModelDevice:
         self._model = self._models[root, depth]
 
     def frame(self, view: View, seconds: float = math.inf, drop: FrameDrop | None = None) -> Frame:
-        """Render one frame of `view`, within `seconds`, unless it is dropped."""
+        """Render one frame of `view`, with the work of `seconds` of an idle machine, unless it is dropped."""
         started = time.perf_counter()
         stop = self._stop = _model.Stop()
         if self._stopped:  # read after the new object is in place: `stop` may come from another thread at any time
@@ -165,7 +165,7 @@ class ModelDevice:
                 stop=stop,
             )
         except TimeoutError as error:
-            raise TooSlow(f"the frame took more than {seconds:.1f} s") from error
+            raise TooSlow(f"the frame takes more work than {seconds:.1f} s of an idle machine do") from error
         except InterruptedError as error:
             if drop is not None and drop.requested and not self._stopped:
                 raise FrameDropped from error

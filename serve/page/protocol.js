@@ -11,7 +11,7 @@ const HEADER = 56;
  * chunk: number, upload: number } }} Hello */
 
 /** @typedef {{ number: number, name: string, depth: number, words: number, bounds: Box | null, camera: Registers,
- * size: Size, frames?: number, period?: number | null }} Scene */
+ * size: Size, frames?: number, period?: number | null, warnings?: string[] }} Scene */
 
 /** @typedef {Look & { camera: Registers, size: Size, nonstop: boolean, frame: number }} View */
 

@@ -45,7 +45,8 @@ def board_scene(blob: Blob) -> Scene:
         mirrors,
         camera,
         blob.lighting,
-        *((blob.animation.roots, blob.animation.period) if blob.animation else ()),
+        *((blob.animation.roots, blob.animation.period) if blob.animation else ((0,), None)),
+        warnings=tuple(map(str, blob.provenance.warnings)),
     )
 
 
@@ -56,8 +57,9 @@ def load_scene(path: Path, depth: int | None = None, progress: Progress | None =
     DoesNotFitError where the file is malformed or too large.
     """
     if path.suffix.lower() in _MEMORY_SUFFIXES:
-        blob = read_any(path, depth=depth)[0]
+        blob, warnings = read_any(path, depth=depth)
         scene = board_scene(blob)
+        scene = replace(scene, warnings=(*scene.warnings, *map(str, warnings)))
         return scene if path.suffix.lower() == ".mem" else replace(scene, camera=blob.view)
     from voxrt.building.pipeline import build  # noqa: PLC0415 - a memory does not wait for what builds
 

@@ -19,7 +19,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -90,18 +89,18 @@ struct FrameEnded {
     std::string problem;
 };
 
-// Ends the work of the current thread after `seconds`, or when `stop` is set; made after a LongCall, whose check it
-// calls too.
+// Ends the work of the current thread after `seconds` of an idle processor, or when `stop` is set; made after a
+// LongCall, whose check it calls too. Work is counted, not time: a busy machine ends no frame earlier.
 class FrameLimit {
 public:
     FrameLimit(double seconds, const Stop* stop)
         : seconds_(seconds), stop_(stop), outer_(voxrt::voxelize::WorkCounter::current().current_check()) {}
 
 private:
-    void check() const {
+    void check() {
         if (stop_ != nullptr && stop_->requested())
             throw FrameEnded{PyExc_InterruptedError, "the frame was stopped"};
-        if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count() > seconds_)
+        if (++checks_ * voxrt::voxelize::WorkCounter::kCheckSeconds > seconds_)
             throw FrameEnded{PyExc_TimeoutError, "the frame takes too long"};
         (*outer_)();
     }
@@ -109,7 +108,7 @@ private:
     const double seconds_;
     const Stop* const stop_;
     const std::function<void()>* const outer_;
-    const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    double checks_ = 0;
     const voxrt::voxelize::InterruptScope scope_{[this] { check(); }};
 };
 
@@ -357,7 +356,7 @@ NB_MODULE(_model, m) {
             "3), material (H, W), face (H, W), uint8, and words_read. lod_scale, 0 ... 2**20 - 1, of docs/lod.md;\n"
             "0 is off; else means, uint8, has a material per block, and there is no light and no bounce.\n"
             "ValueError: a frame above 16384 x 16384, pixel directions not below 2**20. TimeoutError: the frame takes\n"
-            "longer than `seconds`. InterruptedError: `stop` is set.")
+            "more work than an idle core does in `seconds`. InterruptedError: `stop` is set.")
         .def("trace", &trace_rays, nb::arg("origins"), nb::arg("directions"), nb::arg("threads") = 0,
              "Trace rays: origins (N, 3) int32 in 1/16 voxel, directions (N, 3) int32, components below 2**20.\n"
              "Returns material (N,), face (N,), uint8, cell (N, 3) int32 (-1 at a miss), and words_read.\n"
