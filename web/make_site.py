@@ -11,6 +11,7 @@ manuals, and example scenes. Nothing is bundled but voxrt-view.js, the custom el
 
 from __future__ import annotations
 
+import hashlib
 import json
 import re
 import shutil
@@ -92,6 +93,7 @@ def make_site(*modules: Path) -> None:
         "examples": {name: {"title": title, "files": files} for name, (title, files) in EXAMPLES.items()},
     }
     (made / "site.json").write_text(json.dumps(known, indent=2) + "\n")
+    bundle_offline(made)
     shutil.rmtree(SITE, ignore_errors=True)
     made.rename(SITE)
 
@@ -118,6 +120,18 @@ def bundle_view(site: Path) -> None:
     for path in (script, module, site / "voxrt_view.js"):
         path.unlink()
     shutil.copyfile(site / "voxrt-view.js", PACKAGE / "voxrt-view.js")
+
+
+def bundle_offline(site: Path) -> None:
+    """Make one script of the service worker and the list of the files that it keeps: all but what is loaded late."""
+    late = {"boards", "voxrt-view.js", "voxrt_hardware.wasm", "offline.js", "package.json"}
+    kept = [path for path in sorted(site.rglob("*")) if path.is_file() and late.isdisjoint(path.parts)]
+    version = hashlib.sha256(b"".join(path.read_bytes() for path in kept)).hexdigest()[:16]
+    files = json.dumps(["./", *(path.relative_to(site).as_posix() for path in kept)])
+    known, script = site / "offline_files.js", site / "offline.js"
+    known.write_text(f"export const version = {json.dumps(version)}, files = {files};\n", encoding="utf-8")
+    bundle(script, script, "--format=iife", "--allow-overwrite")
+    known.unlink()
 
 
 def bundle(entry: Path, made: Path, *options: str) -> None:

@@ -19,6 +19,9 @@ declare module "*/voxrt/words.js" { export * from "voxrt/words.js"; }
 declare module "*.txt" { const text: string; export default text; }
 declare module "*.zlib" { const bytes: Uint8Array<ArrayBuffer>; export default bytes; }
 
+// What web/make_site.py writes for offline.js.
+declare module "*/offline_files.js" { export const version: string; export const files: string[]; }
+
 // @types/three leaves these classes out.
 declare module "*/loaders/usd/USDAParser.js" { export const USDAParser: new () => import("./page/usd/three_private.js").TextParser; }
 declare module "*/loaders/usd/USDCParser.js" { export const USDCParser: new () => import("./page/usd/three_private.js").CrateParser; }

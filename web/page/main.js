@@ -169,5 +169,6 @@ async function start() {
   };
   animate();
   setInterval(() => app.figures.show(), 250);
+  navigator.serviceWorker?.register("offline.js").catch(() => {}); // without it the page needs the network
 }
 start().catch((error) => notice("error", "The page cannot start", error.message));
