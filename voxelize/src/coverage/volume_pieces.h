@@ -64,23 +64,26 @@ public:
         return whole - !(value > whole);
     }
 
+    /// The polygon with another origin. Coordinates near it need no more than float64.
+    Polygon<double> from(double x, double y, double z) const {
+        Polygon<double> moved;
+        for (int i = 0; i < count_; ++i) {
+            const auto& at = corners_[size_t(i)].at;
+            moved.add({{double(at[0] - Number(x)), double(at[1] - Number(y)), double(at[2] - Number(z))}});
+        }
+        return moved;
+    }
+
     /// The area seen along z, positive where corners run counter-clockwise, and the volume between the polygon and the
-    /// plane z = top.
-    void measure(double x, double y, double top, double& area, double& volume) const {
+    /// plane z = top. In float64.
+    void measure(double top, double& area, double& volume) const {
         area = volume = 0;
-        auto local = [&](const Corner<Number>& c, double out[3]) {
-            out[0] = double(c.at[0] - Number(x));
-            out[1] = double(c.at[1] - Number(y));
-            out[2] = double(Number(top) - c.at[2]);
-        };
-        double a[3], b[3], c[3];
-        local(corners_[0], a);
+        const auto& a = corners_[0].at;
         for (int i = 2; i < count_; ++i) {
-            local(corners_[size_t(i - 1)], b);
-            local(corners_[size_t(i)], c);
+            const auto &b = corners_[size_t(i - 1)].at, &c = corners_[size_t(i)].at;
             const double part = ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2;
             area += part;
-            volume += part * (a[2] + b[2] + c[2]) / 3;
+            volume += part * ((top - a[2]) + (top - b[2]) + (top - c[2])) / 3;
         }
     }
 
@@ -237,20 +240,18 @@ void add_pieces(const Vertex& a, const Vertex& b, const Vertex& c, const Window&
         else if (layer <= w.top)
             receiver.add_piece(x + t.bx, y + t.by, layer, area, volume);
     };
-    auto add = [&](int x, int y, int z, const Polygon<Number>& piece) {
-        if (piece.count() < 3)
-            return;
-        double area, volume;
-        piece.measure(x, y, z + 1, area, volume);
-        report(x, y, z, -area, -volume);
-    };
-    // A flat piece between two voxels counts for the lower one, where it adds no volume.
-    auto add_between = [&](int x, int y, int low, int high, const Polygon<Number>& column) {
-        if (low >= high)
-            add(x, y, high, column);
-        else
-            for (int z = low; z <= high; ++z)
-                add(x, y, z, column.slab(2, z));
+    auto add_column = [&](int x, int y, const Polygon<Number>& column) {
+        // A flat piece between two voxels counts for the lower one, where it adds no volume.
+        const int high = column.highest(2), low = std::min(column.lowest(2), high);
+        const Polygon<double> local = column.from(x, y, low);
+        for (int z = low; z <= high; ++z) {
+            const Polygon<double> piece = low == high ? local : local.slab(2, z - low);
+            if (piece.count() < 3)
+                continue;
+            double area, volume;
+            piece.measure(z + 1 - low, area, volume);
+            report(x, y, z, -area, -volume);
+        }
     };
     const double facing = -static_cast<double>(sign);
     auto add_whole_cell = [&](int x, int y) {
@@ -280,7 +281,7 @@ void add_pieces(const Vertex& a, const Vertex& b, const Vertex& c, const Window&
             }
             const Polygon<Number> column = row.slab(0, x);
             if (column.count() >= 3)
-                add_between(x, y, column.lowest(2), column.highest(2), column);
+                add_column(x, y, column);
         }
     }
 }
