@@ -37,7 +37,7 @@ from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.simulated.model import ModelDevice
 from voxrt.board.view import Lighting
 from voxrt.boards.board_scenes import load_scene
-from voxrt.octree import Sphere, World
+from voxrt.octree import Box, Sphere, World
 from voxrt.octree.camera import look_at
 from voxrt.octree.words import move_pointers
 
@@ -145,13 +145,13 @@ def test_edits_by_the_serial_line_show_between_two_frames(program, scenes, tmp_p
         memory, world = SceneMemory(device, device.loaded()), World(rom_of(scene))
         memory.begin_edits(world, scene)
         seen = picture(scene, cameras[0], SCALE)
-        middle, changes = world.size / 2, 0
+        changes = 0
         for edit in (
-            lambda: world.set([[16, height, 16] for height in range(32)], 1),
-            lambda: world.fill(Sphere((middle, middle, middle), 7), 0),
-            lambda: world.fill(Sphere((middle, 4, middle), 9), 2),
+            lambda: world.set([[6, height, 27] for height in range(32)], 1),
+            lambda: world.fill(Box((0, 20, 0), (20, 22, 32)), 2),
+            lambda: world.fill(Sphere((16, 16, 16), 12), 0),
             world.undo,
-            lambda: world.set([[3, 9, 30]], 1),
+            lambda: world.set([[26, 20, 26], [26, 21, 26], [27, 20, 26]], 1),
         ):
             before = seen
             edit()
