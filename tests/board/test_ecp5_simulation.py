@@ -134,6 +134,7 @@ class SimulatedPort:
         return found
 
 
+@pytest.mark.slow
 def test_edits_by_the_serial_line_show_between_two_frames(program, scenes, tmp_path, monkeypatch):
     """The driver edits the running board; every picture is that of the world before or after an edit."""
     monkeypatch.setattr(serial_device, "_WAIT_SECONDS", 600.0)  # a simulated frame takes a second and more
