@@ -46,6 +46,8 @@ class Scene:
         Seconds from one frame of an animation to the next; None where that is not known.
     warnings
         What its file lost on the way here, a line each.
+    names
+        Names of the materials by id, as far as they are known.
     """
 
     name: str
@@ -58,6 +60,7 @@ class Scene:
     roots: tuple[int, ...] = (0,)
     period: float | None = None
     warnings: tuple[str, ...] = ()
+    names: tuple[str, ...] = ()
 
     @property
     def background(self) -> Triple:

@@ -13,15 +13,17 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
+from voxrt.board.edited_scene import rom_of, with_materials
 from voxrt.board.errors import DeviceError, FrameDropped, Refused, TooSlow
 from voxrt.board.frame_drop import FrameDrop
 from voxrt.board.scene import Scene
 from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.view import View, frame_world, refit
 from voxrt.board.view_check import check_view
-from voxrt.octree import Octree, solid_bounds
+from voxrt.octree import Octree, World, solid_bounds
 from voxrt.octree.words import EMPTY
 from voxrt.serve.packets import FramePacket
+from voxrt.voxelize import DoesNotFitError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -77,6 +79,8 @@ class Renderer:
         size = _first_size(device.identity)
         self.device = device
         self.scene = EMPTY_SCENE
+        self.world: World | None = None  # the scene, once it is edited
+        self._edits = 0
         self.scene_number = 0
         self.crc32 = EMPTY_SCENE.crc32
         self.bounds: tuple[Triple, Triple] | None = None
@@ -165,7 +169,63 @@ class Renderer:
                         self.scene, self.crc32, self.bounds = scene, scene.crc32, bounds
                         self.view = self._first_frame[0]
                         self.scene_number += 1
+                        self.world, self._edits = None, 0
         self._changed.set()
+
+    async def edit(self, change: Callable[[World], None], client: int, request: int) -> dict[str, int]:
+        """Edit the scene; frames then carry the numbers `client` and `request`. Return the figures of the edit.
+
+        Raises
+        ------
+        Refused
+            The scene is an animation, `change` refuses, or the device has no room for the result.
+        DeviceError
+            The device did not keep what was written. Frames show the voxels before; the next edit shows both.
+        """
+        number = self.scene_number
+        async with self._loading:
+            if self.scene_number != number:
+                raise Refused("another scene was loaded meanwhile; look at it, and edit it then")
+            world = await self.aside(partial(self._changed_world, change))
+            async with self._device_lock:
+                written = await self._on_device(partial(self._show_world, world))
+        self._newest_request = (client, request)
+        self._changed.set()
+        self._edits += 1
+        return {**self.edits, "blocks": written, "materials": len(world.materials)}
+
+    @property
+    def edits(self) -> dict[str, int]:
+        """The edits of the scene, those that can be undone, and those that can be done again."""
+        undo, redo = (0, 0) if self.world is None else self.world.steps
+        return {"number": self._edits, "undo": undo, "redo": redo}
+
+    def still_scene(self) -> Scene:
+        """Return the scene with its octree as it is now; Refused if it is an animation. It may take seconds."""
+        if len(self.scene.roots) > 1:
+            raise Refused(f"{self.scene.name} is an animation, whose frames share blocks; load a scene of one frame")
+        world = self.world
+        return self.scene if world is None else replace(self.scene, words=world.rom().octree.words)
+
+    def _changed_world(self, change: Callable[[World], None]) -> World:
+        world = self.world
+        if world is None:
+            world = World(rom_of(self.still_scene()), words=self.device.identity.capacity)
+        change(world)
+        return world
+
+    def _show_world(self, world: World) -> int:
+        scene = with_materials(self.scene, world.materials)
+        try:
+            if self.world is None:
+                self._memory.begin_edits(world, scene)
+            written = self._memory.show_edits(scene)
+        except DoesNotFitError as error:
+            world.undo()
+            raise Refused(str(error)) from error
+        self._shown_frame = 0
+        self.scene, self.world = scene, world
+        return written
 
     async def aside(self, call: Callable[[], Result]) -> Result:
         """Call what looks at a scene, in a thread beside that of the device; one at a time, each takes a moment."""

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from voxrt.board.scene_memory import Progress
 
 _NICE = 10
+_NAME = 100  # characters of a material's name
 
 
 class Stage(msgspec.Struct, frozen=True, tag=True):
@@ -54,6 +55,7 @@ class Described(msgspec.Struct, frozen=True, tag=True):
     roots: tuple[int, ...]
     period: float | None
     warnings: tuple[str, ...]
+    names: tuple[str, ...] = ()
 
 
 Message: TypeAlias = Stage | Problem | Described
@@ -103,6 +105,7 @@ def run_child(read: Callable[[Sequence[Path], Progress], Scene], files: Sequence
                 scene.roots,
                 scene.period,
                 shown_warnings(scene.warnings),
+                tuple(shown_line(name, _NAME) for name in scene.names),
             ),
         )
         for array, kind in ((scene.colours, "u1"), (scene.mirrors, "u1"), (scene.words, "<u4")):

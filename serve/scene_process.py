@@ -173,4 +173,5 @@ async def _receive_scene(out: asyncio.StreamReader, described: Described) -> Sce
     words = np.frombuffer(data, dtype="<u4").astype(np.uint32, copy=False)
     name, camera, lighting = shown_line(described.name), described.camera, described.lighting
     roots, period, warnings = described.roots, described.period, shown_warnings(described.warnings)
-    return Scene(name, described.depth, words, colours, mirrors, camera, lighting, roots, period, warnings)
+    names = tuple(shown_line(one) for one in described.names[:256])
+    return Scene(name, described.depth, words, colours, mirrors, camera, lighting, roots, period, warnings, names)

@@ -43,10 +43,11 @@ class Build(NamedTuple):
     narrow: bool = False  # Multipliers of 18 x 18 bits.
     repeats: bool = False  # Another form of a core that other builds drive with the same benches, for a minute.
     wrapper: tuple[Path, ...] = ()  # The file of the top, if it is none of the core's.
+    edited_frames: int = 16  # See bench_edits.
 
 
 BUILDS = {
-    "lit": Build(CORE, CONFIGURATIONS["lit"], ("bench_core", "bench_registers", "bench_waveforms")),
+    "lit": Build(CORE, CONFIGURATIONS["lit"], ("bench_core", "bench_registers", "bench_waveforms", "bench_edits")),
     "octo-narrow": Build(CORE, CONFIGURATIONS["octo"], ("bench_core",), narrow=True, repeats=True),
     "banked-light": Build(CORE, SMALL | {"Lanes": 5, "MemoryForm": 1, "Light": 1}, ("bench_core",), repeats=True),
     "mirrors": Build(CORE, SMALL | {"Lanes": 2, "Mirrors": 1}, ("bench_core",), repeats=True),
@@ -113,8 +114,14 @@ BUILDS = {
         ("bench_cached_memory",),
     ),
     "cached": Build(
-        CORE, SMALL | {"Lanes": 3, "MemoryForm": 2, "L1SetBits": 1, "L2SetBits": 1}, ("bench_cached_core",)
+        CORE,
+        SMALL | {"Lanes": 3, "MemoryForm": 2, "L1SetBits": 1, "L2SetBits": 1},
+        ("bench_cached_core", "bench_edits"),
     ),
+    **{
+        f"{name}-edits": Build(CORE, CONFIGURATIONS[name], ("bench_edits",), repeats=True, edited_frames=1000)
+        for name in ("tiny", "octo", "cached4")
+    },
     "zynq_cached": Build(
         "voxrt_zynq_cached",
         SMALL | {"Lanes": 2, "L1SetBits": 1, "L2SetBits": 1},
@@ -156,6 +163,7 @@ def run(name: str) -> None:
         build_dir=folder,
         results_xml=str(folder / "results.xml"),
         seed=SEED,
+        extra_env={"EDITED_FRAMES": str(build.edited_frames)},
         test_args=["+verilator+rand+reset+2", f"+verilator+seed+{SEED}"],
     )
     count, failed = get_results(results)

@@ -46,7 +46,8 @@ def board_scene(blob: Blob) -> Scene:
         camera,
         blob.lighting,
         *((blob.animation.roots, blob.animation.period) if blob.animation else ((0,), None)),
-        warnings=tuple(map(str, blob.provenance.warnings)),
+        tuple(map(str, blob.provenance.warnings)),
+        tuple(material.name for material in rom.materials),
     )
 
 

@@ -53,23 +53,31 @@ constexpr int kThreadLimit = 1024;
 
 NamedTuple rendered_pixels, traced_rays;
 
-// A memory with words of its own, so that nobody changes them after they are verified.
+// A memory with words of its own, so that nobody changes them after they are verified. Memories of other roots share
+// them.
 class OwnedMemory {
 public:
-    OwnedMemory(const Words& words, int depth)
-        : words_(words.data(), words.data() + words.shape(0)), verified_(verify(words_, depth)) {}
+    OwnedMemory(const Words& words, int depth, std::size_t root)
+        : words_(std::make_shared<const std::vector<uint32_t>>(words.data(), words.data() + words.shape(0))),
+          verified_(verify(*words_, depth, root)) {}
+    OwnedMemory(const OwnedMemory& other, int depth, std::size_t root)
+        : words_(other.words_), verified_(verify(*words_, depth, root)) {}
     OwnedMemory(const OwnedMemory&) = delete;
     OwnedMemory& operator=(const OwnedMemory&) = delete;
 
     const VerifiedMemory& verified() const { return verified_; }
 
 private:
-    static VerifiedMemory verify(const std::vector<uint32_t>& words, int depth) {
+    static VerifiedMemory verify(const std::vector<uint32_t>& words, int depth, std::size_t root) {
+        if (root >= words.size() && !words.empty())
+            throw std::invalid_argument("there is no word " + std::to_string(root) + " in a memory of " +
+                                        std::to_string(words.size()));
         const LongCall call;
-        return VerifiedMemory({words.data(), words.size(), depth < 0 ? 0 : static_cast<unsigned>(depth)});
+        const std::uint64_t word = root == 0 ? voxrt::octree::kWord0 : words[root];
+        return VerifiedMemory({words.data(), words.size(), depth < 0 ? 0 : static_cast<unsigned>(depth), word});
     }
 
-    std::vector<uint32_t> words_;
+    std::shared_ptr<const std::vector<uint32_t>> words_;
     VerifiedMemory verified_;
 };
 
@@ -338,8 +346,12 @@ NB_MODULE(_model, m) {
         .def(nb::init<>())
         .def("set", &Stop::set, "End the frames that were given this object, and all further ones.");
     nb::class_<OwnedMemory>(m, "Memory", "A verified octree memory, which any number of threads may trace through.")
-        .def(nb::init<const Words&, int>(), nb::arg("words"), nb::arg("depth"),
-             "Copy words (uint32, report dialect) of a depth of 1 ... 16. ValueError, naming the word: malformed.")
+        .def(nb::init<const Words&, int, std::size_t>(), nb::arg("words"), nb::arg("depth"), nb::arg("root") = 0,
+             "Copy words (uint32, report dialect) of a depth of 1 ... 16, whose root is word `root`. ValueError, "
+             "naming\n"
+             "the word: malformed.")
+        .def(nb::init<const OwnedMemory&, int, std::size_t>(), nb::arg("memory"), nb::arg("depth"), nb::arg("root"),
+             "Take the octree at another root of a memory's words, which are not copied.")
         .def(
             "render", &render_frame, nb::arg("materials"), nb::arg("camera"), nb::arg("width"), nb::arg("height"),
             nb::arg("threads") = 0, nb::arg("instructions") = "", nb::kw_only(), nb::arg("flat") = false,
