@@ -42,7 +42,7 @@ SHARED = (
     "camera.js", "camera_text.js", "controls.css", "copy_address.js", "crc32.js", "drop.js", "elements.js",
     "events.js", "figures.js", "flight.js", "frame_requests.js", "gestures.js", "glide.js", "icon.svg", "light.js",
     "navigation.js", "notices.js", "picture.js", "pilot.js", "resolution.js", "save.js", "style.css", "tools.js",
-    "vectors.js", "viewpoint.js", "views.js",
+    "vectors.js", "viewpoint.js", "views.js", "walk.js",
 )  # fmt: skip
 """Files of the server's page."""
 
