@@ -54,8 +54,8 @@ export class EditBar {
       { id: "edit", role: "group", "aria-label": "Edit" },
       bar,
       brush,
-      this.swatches,
       fresh,
+      this.swatches,
       this.figures,
     );
     $("stage").append(this.box);
