@@ -217,7 +217,9 @@ def test_light_is_that_of_the_changed_world(page: Edited) -> None:
     page.browser.mouse([place])
     page.waits(1)
     rests(page.browser)
-    position = page.browser.run("return [...document.querySelectorAll('#light-place input[type=number]')].map(f => f.value)")
+    position = page.browser.run(
+        "return [...document.querySelectorAll('#light-place input[type=number]')].map(f => f.value)"
+    )
     assert position is not None
     lighting = Lighting(tuple(round(16 * 128 * part) for part in (1.4, 1.9, 1.1)), on=True)
     assert shows_exactly(page.browser, page.world.rom(), lighting)
@@ -247,7 +249,9 @@ def test_rays_links_pages_and_the_hardware_have_the_edits(page: Edited, tmp_path
     # The link alone brings the edited scene.
     link = browser.run("return location.hash")
     opened(browser, link)
-    assert f"{len(page.world.rom().octree.words):,} words" in browser.run("return document.querySelector('#details').innerText")
+    assert f"{len(page.world.rom().octree.words):,} words" in browser.run(
+        "return document.querySelector('#details').innerText"
+    )
     assert page.shows_exactly()
 
 
