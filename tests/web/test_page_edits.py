@@ -1,4 +1,4 @@
-"""Edits on the static page by real clicks: the picture, the memory and all that is made of it are those of voxrt.World."""
+"""Edits on the static page by real clicks: pictures, words and all that is made of them are those of voxrt.World."""
 
 from __future__ import annotations
 
@@ -217,10 +217,6 @@ def test_light_is_that_of_the_changed_world(page: Edited) -> None:
     page.browser.mouse([place])
     page.waits(1)
     rests(page.browser)
-    position = page.browser.run(
-        "return [...document.querySelectorAll('#light-place input[type=number]')].map(f => f.value)"
-    )
-    assert position is not None
     lighting = Lighting(tuple(round(16 * 128 * part) for part in (1.4, 1.9, 1.1)), on=True)
     assert shows_exactly(page.browser, page.world.rom(), lighting)
 

@@ -12,8 +12,8 @@ const POINTS = 32; // of a round brush
 /** Show a frame for what was picked; none for null. @param {Picked | null} picked @param {number} size voxels across
  * @param {BandFrame | null} frame the picture */
 export function showAim(picked, size, frame) {
-  const svg =
-    document.getElementById("aim") ?? $("stage").appendChild(svgElement("svg", { id: "aim", "aria-hidden": "true" }));
+  const svg = document.getElementById("aim") ?? svgElement("svg", { id: "aim", "aria-hidden": "true" });
+  if (!svg.isConnected) $("octants").after(svg);
   svg.replaceChildren();
   if (!picked?.beside || !frame) return;
   svg.setAttribute("viewBox", `0 0 ${frame.width} ${frame.height}`);

@@ -58,6 +58,7 @@ export class EditBar {
       this.swatches,
       this.figures,
     );
+    this.box.hidden = true;
     $("stage").append(this.box);
     document.head.append(element("link", { rel: "stylesheet", href: "edit.css" }));
     makeToolbar(bar);

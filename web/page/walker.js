@@ -12,6 +12,8 @@ import { bodyBox, bodyFor, eyeOf, roomAbove, step } from "./walk.js";
 
 const FIELD_OF_VIEW = 60;
 const RUN = 1.8; // times the pace
+const UPWARDS = 1; // the axis
+const ROWS = [0.85, 0.8, 0.75, 0.7, 0.65, 0.6, 0.55, 0.5, 0.4, 0.3]; // parts of the picture's height
 const REACH = 6; // heights of the eye to what the camera orbits later
 
 export class Walker {
@@ -24,9 +26,13 @@ export class Walker {
     this.app = app;
     this.flight = flight;
     const canvas = $("picture");
-    canvas.addEventListener("click", () => this.takesPress() && canvas.requestPointerLock());
-    document.addEventListener("pointerlockerror", () => {
-      this.#lockFails = true;
+    canvas.addEventListener("click", async () => {
+      if (!this.takesPress()) return;
+      try {
+        await canvas.requestPointerLock();
+      } catch {
+        this.#lockFails = true;
+      }
     });
     document.addEventListener("pointerlockchange", () => document.body.classList.toggle("locked", this.locked));
     document.addEventListener("mousemove", ({ movementX, movementY }) => {
@@ -66,7 +72,7 @@ export class Walker {
       low[1] < 0 || Math.min(low[0], low[2]) < 0 || Math.max(high[0], high[2]) > side || meetsSolid(octree, low, high);
   }
 
-  /** Stand where the eye is, if it has room in the world; else on what is in the middle of the picture. */
+  /** Stand where the eye is, if it has room in the world; else on the ground that is nearest to the foot of the picture. */
   async start() {
     const [memory, pose] = [this.app.memory(), this.app.view()];
     if (!memory || !pose) return;
@@ -87,12 +93,23 @@ export class Walker {
     if (pose.eye[1] < side && !meets(...bodyBox(soles, body))) return soles;
     const size = this.app.size();
     const registers = this.app.frames.registers(pose, size);
-    const direction = pixelDirection(registers, size, Math.floor(size[0] / 2), Math.floor(size[1] / 2));
-    const { cell } = await this.app.painter.follow(registers.position, direction);
-    const [low, high] = this.app.bounds();
-    const aim = cell ?? [(low[0] + high[0]) / 2, 0, (low[2] + high[2]) / 2];
     const inside = (/** @type {number} */ at) => Math.min(side - body.radius, Math.max(body.radius, at + 0.5));
-    return roomAbove([inside(aim[0]), aim[1], inside(aim[2])], body, side, meets);
+    const ways = ROWS.map((row) => pixelDirection(registers, size, size[0] >> 1, Math.floor(row * size[1])));
+    const hits = await Promise.all(ways.map((way) => this.app.painter.follow(registers.position, way)));
+    for (const [i, { cell, face }] of hits.entries()) {
+      if (!cell || face !== UPWARDS || ways[i][UPWARDS] > 0) continue;
+      const place = [inside(cell[0]), cell[1] + 1, inside(cell[2])];
+      const room = roomAbove(place, body, place[1] + body.step, meets);
+      if (room) return room;
+    }
+    const [low, high] = this.app.bounds();
+    const middle = [(low[0] + high[0]) / 2, high[1], (low[2] + high[2]) / 2];
+    return roomAbove(
+      middle.map((at, axis) => (axis === UPWARDS ? at : inside(at))),
+      body,
+      side,
+      meets,
+    );
   }
 
   /** Called once per frame of the screen. */
