@@ -1,7 +1,8 @@
-"""Time edits on the static page in Chromium: `make site`, then python bench/web_edit.py. It needs chromium and chromedriver.
+"""Time edits on the static page in Chromium: `make site`, then python bench/web_edit.py.
 
-Milliseconds from the press of the mouse to the picture on the canvas, by real clicks, in a window of 1280x800 with four
-rays per pixel: each tool with brushes of one voxel and of 1/32 of the world, at places all over the picture. Writes bench/results/web_edit.md.
+It needs chromium and chromedriver. Milliseconds from the press of the mouse to the picture on the canvas, by real
+clicks, in a window of 1280x800 with four rays per pixel: each tool with brushes of one voxel and of 1/32 of the world,
+at places all over the picture. Writes bench/results/web_edit.md.
 """
 
 from __future__ import annotations
@@ -85,8 +86,8 @@ def main() -> None:
     head = [
         "# Edits on the static page",
         "",
-        f"`python bench/web_edit.py`, courtyard, Chromium, {os.cpu_count()} cores: from the press of the mouse to the picture on the canvas. "
-        f"Load of the machine: {os.getloadavg()[0]:.1f}.",
+        "`python bench/web_edit.py`: the courtyard, from the press of the mouse to the picture on the canvas.",
+        f"Chromium on {os.cpu_count()} cores; load of the machine {os.getloadavg()[0]:.1f}.",
         "",
         "| world | tool | brush, voxels | clicks | median, ms | longest, ms |",
         "|---|---|--:|--:|--:|--:|",

@@ -3,7 +3,8 @@ import { answer, fileOf, importOf, sha } from "./jobs.mjs";
 
 const { Voxrt } = await importOf("voxrt/voxrt.js");
 const { World } = await importOf("voxrt/world.js");
-const [editing, picture] = await Promise.all([1, 2].map(async () => Voxrt.load(await fileOf("voxrt/voxrt.wasm"))));
+const editing = await Voxrt.load(await fileOf("voxrt/voxrt_edit.wasm"));
+const picture = await Voxrt.load(await fileOf("voxrt/voxrt.wasm"));
 
 await answer(({ words, depth, materials, limits, steps, camera, size }) => {
   const world = new World(editing, { words: Uint32Array.from(words), depth, materials }, limits);

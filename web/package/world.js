@@ -1,8 +1,9 @@
 // An octree that is edited: the World of Python, in WebAssembly. An instance of Voxrt has one at a time.
 //
-//     const world = new World(voxrt, built);
+//     const editing = await Voxrt.load(await fetch("voxrt_edit.wasm"));
+//     const world = new World(editing, built);
 //     world.fill({ sphere: { centre: [64, 20, 64], radius: 12 } }, 0); // digs
-//     picture.applyPatch(world.commit()); // another instance, whose memory was world.image() at the beginning
+//     picture.applyPatch(world.commit()); // an instance whose memory was world.image() at the beginning
 //
 // Errors are VoxrtError, one line each. An edit that fails changes nothing.
 

@@ -4,13 +4,14 @@ import { showAim } from "./aim.js";
 import { EditBar, SIZES } from "./edit_bar.js";
 import { EditPointer } from "./edit_pointer.js";
 import { Editor } from "./editor.js";
-import { $, pressed } from "./elements.js";
+import { $, isPressed, pressed } from "./elements.js";
 import { pixelDirection } from "./camera.js";
 import { notice } from "./notices.js";
 /** @import { App } from "./app.js" @import { Choice } from "./edit_bar.js" @import { Tool } from "./edit_worker.js" */
 /** @import { Place } from "./edit_pointer.js" @import { Gestures } from "./gestures.js" */
 /** @import { Commands } from "./tools.js" @import { Walker } from "./walker.js" */
 
+const NARROW = matchMedia("(max-width: 45rem), (max-height: 30rem)"); // the panel would leave little of the picture
 const FINE = 5; // levels: the first brush has 1/32 of the world
 
 export class EditMode {
@@ -19,12 +20,12 @@ export class EditMode {
   /** @type {Place | null} */ #pointer = null;
   #isAiming = false;
   #isOpen = false;
+  #hidPanel = false;
 
-  /** @param {App} app @param {WebAssembly.Module} module @param {Gestures} gestures @param {Commands} commands @param
+  /** @param {App} app @param {Gestures} gestures @param {Commands} commands @param
    * {Walker} walker */
-  constructor(app, module, gestures, commands, walker) {
+  constructor(app, gestures, commands, walker) {
     this.app = app;
-    this.module = module;
     this.gestures = gestures;
     this.walker = walker;
     this.bar = new EditBar({
@@ -49,6 +50,7 @@ export class EditMode {
       BracketRight: () => this.#resize(1),
       Escape: () => this.choose({ tool: "look" }),
     });
+    $("inspect").addEventListener("click", () => isPressed($("inspect")) && this.choose({ tool: "look" }));
     addEventListener("keydown", (event) => this.#press(event));
     addEventListener("beforeunload", (event) => app.memory()?.edited && event.preventDefault());
     app.painter.on("frame", () => {
@@ -64,6 +66,9 @@ export class EditMode {
     pressed($("edit-toggle"), this.#isOpen);
     this.bar.box.hidden = !this.#isOpen;
     if (this.#isOpen && !this.#editor) this.#begin();
+    const hidesPanel = this.#isOpen && NARROW.matches && !document.body.classList.contains("panel-hidden");
+    if (hidesPanel || this.#hidPanel) $("toggle-panel").click();
+    this.#hidPanel = hidesPanel;
     this.choose({ tool: this.#isOpen ? "dig" : "look" });
   }
 
@@ -74,7 +79,7 @@ export class EditMode {
     const [most, second] = used.sort((one, other) => other.voxels - one.voxels);
     const material = second?.voxels ? second.id : Math.max(1, most?.id ?? 1);
     this.#choice = { ...this.#choice, size: SIZES.find((size) => size >= 2 ** (memory.depth - FINE)) ?? 1, material };
-    const editor = new Editor(this.app, this.module, memory, (figures) => this.bar.showFigures(figures));
+    const editor = new Editor(this.app, memory, (figures) => this.bar.showFigures(figures));
     this.#editor = editor;
     this.walker.follow(editor);
     editor.ready.catch((error) => this.#editor === editor && this.#fail(error));
@@ -101,6 +106,7 @@ export class EditMode {
     if (materials.length - 1 !== this.bar.swatches.childElementCount) this.bar.showMaterials(materials);
     this.bar.show(this.#choice);
     const { tool } = this.#choice;
+    if (tool !== "look" && isPressed($("inspect"))) $("inspect").click(); // a click does one thing
     this.gestures.turning = tool === "look" ? 0 : 1;
     document.body.classList.toggle("editing", tool !== "look");
     this.#aim(this.#pointer);

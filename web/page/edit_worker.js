@@ -20,8 +20,8 @@ const STEPS = 1000; // of undo
 /** @type {Box} */ const NOWHERE = [Array(3).fill(0), Array(3).fill(0)];
 
 /** @typedef {{ stroke: number, edits: number, box: Box }} Done a stroke */
-/** @type {{ voxrt: Voxrt | null, world: World | null, live: number, done: Done[], undone: Done[] }} */
-const state = { voxrt: null, world: null, live: 0, done: [], undone: [] };
+/** @type {{ world: World | null, live: number, done: Done[], undone: Done[] }} */
+const state = { world: null, live: 0, done: [], undone: [] };
 
 function begun() {
   if (!state.world) throw new Error("the worker has not started");
@@ -66,12 +66,14 @@ function move(from, to, step) {
 }
 
 const calls = {
-  /** Returns the words that the patches change. @param {{ module: WebAssembly.Module, words: Uint32Array, depth: number,
-   * materials: Required<Material>[] }} job */
-  async start({ module, ...memory }) {
-    state.voxrt = await Voxrt.load(module);
+  /** Returns the words that the patches change. @param {{ words: Uint32Array, depth: number, materials:
+   * Required<Material>[] }} memory */
+  async start(memory) {
+    const answer = await fetch(new URL("voxrt/voxrt_edit.wasm", import.meta.url));
+    if (!answer.ok) throw new Error(`voxrt_edit.wasm: the server answers ${answer.status}`);
+    const voxrt = await Voxrt.load(answer);
     const limits = { words: Math.max(WORDS, 2 * memory.words.length), undoSteps: STEPS };
-    state.world = new World(state.voxrt, memory, limits);
+    state.world = new World(voxrt, memory, limits);
     return state.world.image();
   },
 

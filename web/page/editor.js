@@ -24,19 +24,19 @@ export class Editor {
   /** @type {ReturnType<typeof setTimeout> | null} */ #soon = null;
   /** @type {PatchedWords | null} the words that workers have */ words = null;
 
-  /** @param {App} app @param {WebAssembly.Module} module voxrt.wasm @param {Shown} memory @param {(figures: EditFigures)
+  /** @param {App} app @param {Shown} memory @param {(figures: EditFigures)
    * => void} onFigures */
-  constructor(app, module, memory, onFigures) {
+  constructor(app, memory, onFigures) {
     this.app = app;
     this.original = memory;
     this.materials = memory.materials;
     this.onFigures = onFigures;
-    this.ready = this.#start(module);
+    this.ready = this.#start();
   }
 
-  /** @param {WebAssembly.Module} module */ async #start(module) {
+  async #start() {
     const { words, depth, materials } = this.original;
-    const image = await this.#hand.call("start", { module, words, depth, materials });
+    const image = await this.#hand.call("start", { words, depth, materials });
     // Words that store equal blocks twice are edited after these were made one.
     if (image.length !== words.length) await this.app.showWords(image);
     this.words = new PatchedWords(image, depth);

@@ -109,9 +109,9 @@ function inspect(app) {
   };
 }
 
-/** Keys, gestures and buttons move the camera. Editing and walking are loaded when they are wanted. @param {App} app
- * @param {WebAssembly.Module} module */
-function steer(app, module) {
+/** Keys, gestures and buttons move the camera. Editing and walking are loaded when they are wanted. @param {App}
+ * app */
+function steer(app) {
   const canvas = $("picture");
   const commands = {
     ...makeTools(),
@@ -132,7 +132,7 @@ function steer(app, module) {
   const load = once(async () => {
     const [{ Walker }, { EditMode }] = await Promise.all([import("./walker.js"), import("./edit_mode.js")]);
     walker = new Walker(app, flight);
-    return { walker, edit: new EditMode(app, module, gestures, commands, walker) };
+    return { walker, edit: new EditMode(app, gestures, commands, walker) };
   });
   const fail = (/** @type {Error} */ { message }) => notice("error", "The scene cannot be edited", message);
   $("edit-toggle").onclick = () => load().then(({ edit }) => edit.toggle(), fail);
@@ -194,7 +194,7 @@ async function start() {
   openScenes(app, site, opening);
   inspect(app);
   offerDownloads(app);
-  const pilot = steer(app, module);
+  const pilot = steer(app);
   openAddress(app, site, opening);
   const animate = () => {
     requestAnimationFrame(animate);
