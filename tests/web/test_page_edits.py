@@ -286,3 +286,41 @@ def test_a_new_colour_is_built_and_saved(page: Edited, tmp_path: Path) -> None:
     read, _ = voxrt.read_rom(tmp_path / "voxrt.mem")
     assert np.array_equal(read.octree.words, page.world.rom().octree.words)
     assert read.materials == page.world.materials
+
+
+def eye(browser: Browser) -> np.ndarray:
+    rests(browser)
+    return np.array(browser.run("return window.voxrt.view().eye"))
+
+
+def test_walk_stands_on_the_ground_that_is_dug_away(page: Edited) -> None:
+    browser = page.browser
+    page.use("dig", 9)
+    browser.click("#walk")
+    assert browser.until("document.querySelector('#walk').getAttribute('aria-pressed') === 'true'")
+    start = eye(browser)
+    ground = np.floor(start - [0, 1, 0] * np.arange(30)[:, None]).astype(int)
+    solid = np.flatnonzero(page.world.material_at(ground))
+    tall = start[1] - (ground[solid[0]][1] + 1)
+    size = page.world.rom().grid.voxel_size
+    assert tall == pytest.approx(max(1.6, min(1.6 / size, 128 / 12)), abs=0.01)
+    browser.keys(["w"], 0.4)
+    walked = eye(browser)
+    assert np.hypot(*(walked - start)[[0, 2]]) > 1
+    assert page.world.material_at(np.floor(walked).astype(int)) == 0
+    browser.run("document.querySelector('#picture').focus()")
+    browser.keys(["\ue015"], 1.2)  # looks down at the feet
+    assert browser.until("window.voxrt.view().pitch < -1.3")
+    rests(browser)
+    page.expect(page.middle(), "dig")
+    browser.key("x", "KeyX")
+    page.waits(1)
+    assert browser.until(f"window.voxrt.view().eye[1] < {walked[1] - 1}")
+    assert eye(browser)[1] < walked[1] - 1
+    # Nothing is built where somebody stands.
+    page.use("build", 9)
+    browser.key("x", "KeyX")
+    browser.click("#orbit")
+    rests(browser)
+    assert browser.run("return document.querySelector('#stage').dataset.edition") == "1"
+    assert browser.run("return window.voxrt.view().fov") == pytest.approx(35)
