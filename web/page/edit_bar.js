@@ -12,6 +12,7 @@ import { $, all, element, makeToolbar, pressed } from "./elements.js";
 
 /** Voxels across. */
 export const SIZES = [1, 2, 3, 5, 7, 9, 13, 17, 25, 33, 49, 65];
+const KEPT = "Of the newest edits. Blocks that Undo needs are kept.";
 /** @type {[ToolChoice, string, string][]} */ const TOOLS = [
   ["look", "Look", "Drag turns, as without tools (Esc)"],
   ["dig", "Dig", "Left button digs, right button builds"],
@@ -39,7 +40,7 @@ export class EditBar {
     this.colour.onchange = () =>
       actions.addColour([1, 3, 5].map((at) => Number.parseInt(this.colour.value.slice(at, at + 2), 16)));
     this.swatches = element("div", { id: "swatches", role: "toolbar", "aria-label": "Materials" });
-    this.figures = element("p", { id: "edit-figures", className: "quiet figure" });
+    this.figures = element("p", { id: "edit-figures", className: "quiet figure", title: KEPT });
     const bar = element(
       "div",
       { id: "edit-tools", role: "toolbar", "aria-label": "Tools" },
@@ -88,9 +89,9 @@ export class EditBar {
     this.swatches.replaceChildren(...made);
   }
 
-  /** @param {EditFigures} figures */ showFigures({ blocks, free, fresh, undo, redo }) {
+  /** @param {EditFigures} figures */ showFigures({ blocks, fresh, freed, undo, redo }) {
     this.undo.disabled = !undo;
     this.redo.disabled = !redo;
-    this.figures.textContent = `${count(8 * blocks + 1)} words · ${count(fresh)} new blocks · ${count(free)} freed blocks`;
+    this.figures.textContent = `${count(8 * blocks + 1)} words · ${count(fresh)} new blocks · ${count(freed)} freed blocks`;
   }
 }

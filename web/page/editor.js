@@ -11,15 +11,16 @@ const LONG = 0.12; // seconds: a picture that takes longer begins coarsely
 const REST = 500; // milliseconds after the last edit until the memory is made of it
 const FIGURES = 200; // milliseconds between figures
 
-/** @typedef {Awaited<ReturnType<EditCalls["figures"]>> & { fresh: number }} EditFigures `fresh`: new blocks of the
- * newest edit */
+/** `fresh`: blocks that the newest edits have made, or brought back; `freed`: blocks that voxels no longer need.
+ * @typedef {Awaited<ReturnType<EditCalls["figures"]>> & { fresh: number, freed: number }} EditFigures */
 
 export class Editor {
   /** @type {Hand<EditCalls>} */ #hand = new Hand("./edit_worker.js");
   /** @type {{ edition: number, box: Box }[]} what pictures of earlier editions lack */ #boxes = [];
   #isRepainting = false;
   #isStale = false;
-  #fresh = 0;
+  #fresh = 0; // blocks of patches since the newest figures
+  /** @type {number | null} of the newest figures */ #blocks = null;
   /** @type {ReturnType<typeof setTimeout> | undefined} */ #rest;
   /** @type {ReturnType<typeof setTimeout> | null} */ #soon = null;
   /** @type {PatchedWords | null} the words that workers have */ words = null;
@@ -78,7 +79,7 @@ export class Editor {
     this.#boxes.push({ edition: this.app.painter.edition, box });
     this.repaint();
     this.#isStale = true;
-    this.#fresh = patch.addresses.length;
+    this.#fresh += patch.addresses.length;
     clearTimeout(this.#rest);
     this.#rest = setTimeout(() => this.settle(), REST);
     this.#soon ??= setTimeout(() => this.#showFigures(), FIGURES);
@@ -88,7 +89,13 @@ export class Editor {
   async #showFigures() {
     this.#soon = null;
     const figures = await this.#hand.call("figures", undefined).catch(() => null);
-    if (figures) this.onFigures({ ...figures, fresh: this.#fresh });
+    if (!figures) return;
+    const { blocks } = figures;
+    const grown = blocks - (this.#blocks ?? blocks);
+    const fresh = Math.max(this.#fresh, grown);
+    this.#blocks = blocks;
+    this.#fresh = 0;
+    this.onFigures({ ...figures, fresh, freed: fresh - grown });
   }
 
   /** Render what the picture lacks; called after edits and frames. */

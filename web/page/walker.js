@@ -13,7 +13,7 @@ import { bodyBox, bodyFor, eyeOf, roomAbove, step } from "./walk.js";
 const FIELD_OF_VIEW = 60;
 const RUN = 1.8; // times the pace
 const UPWARDS = 1; // the axis
-const ROWS = [0.85, 0.8, 0.75, 0.7, 0.65, 0.6, 0.55, 0.5, 0.4, 0.3]; // parts of the picture's height
+const ROWS = [0.7, 0.65, 0.75, 0.6, 0.8, 0.55, 0.85, 0.5, 0.4, 0.3]; // parts of the picture's height
 const REACH = 6; // heights of the eye to what the camera orbits later
 
 export class Walker {
@@ -72,7 +72,7 @@ export class Walker {
       low[1] < 0 || Math.min(low[0], low[2]) < 0 || Math.max(high[0], high[2]) > side || meetsSolid(octree, low, high);
   }
 
-  /** Stand where the eye is, if it has room in the world; else on the ground that is nearest to the foot of the picture. */
+  /** Stand where the eye is, if it has room in the world; else on ground below the middle of the picture. */
   async start() {
     const [memory, pose] = [this.app.memory(), this.app.view()];
     if (!memory || !pose) return;

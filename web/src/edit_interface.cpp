@@ -1,5 +1,5 @@
-// The C interface of voxrt_edit.wasm: a world whose voxels change (octree/src/edit/world.h). One exists at a time. Edits
-// return 1, and 0 where the memory has no room for the result: then nothing has changed.
+// The C interface of voxrt_edit.wasm: a world whose voxels change (octree/src/edit/world.h). One exists at a time.
+// Edits return 1, and 0 where the memory has no room for the result: then nothing has changed.
 #include "export.h"
 #include "interface_error.h"
 #include "rays.h"
