@@ -10,17 +10,13 @@ from __future__ import annotations
 import os
 import statistics
 import sys
-import threading
-from functools import partial
-from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path.append(str(ROOT / "tests"))
+sys.path.append(str(Path(__file__).resolve().parents[1] / "tests"))
 from fakes.browser import RESTS, Browser, chromium
+from fakes.site_server import serving_site
 
-SITE = ROOT / "build" / "site"
-RESULTS = ROOT / "bench" / "results" / "web_edit.md"
+RESULTS = Path(__file__).resolve().parent / "results" / "web_edit.md"
 DEPTHS = (7, 10)
 TOOLS = {"dig": 4, "build": 4, "paint": 5}  # and a material
 PLACES = [(right, down) for down in (-40, 20, 80) for right in (-150, -80, -10, 60)]
@@ -33,13 +29,6 @@ WATCH_SCRIPT = """
     new MutationObserver(() => window.edits.push(performance.now() - pressed))
       .observe(stage, { attributeFilter: ["data-edition"] });
 """
-
-
-class Quiet(SimpleHTTPRequestHandler):
-    """Python's own file server, without a line per request."""
-
-    def log_message(self, *_: object) -> None:
-        pass
 
 
 def times(browser: Browser, tool: str, step: int) -> list[float]:
@@ -59,15 +48,11 @@ def times(browser: Browser, tool: str, step: int) -> list[float]:
 
 
 def main() -> None:
-    if not SITE.exists():
-        sys.exit("build/site is not here: make site")
-    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=str(SITE)))
-    threading.Thread(target=server.serve_forever, daemon=True).start()
     rows = []
-    with chromium() as browser:
+    with serving_site() as address, chromium() as browser:
         for depth in DEPTHS:
             browser.open("about:blank")
-            browser.open(f"http://127.0.0.1:{server.server_port}/#scene=courtyard&depth={depth}")
+            browser.open(f"{address}#scene=courtyard&depth={depth}")
             browser.until(f"document.querySelector('#stage').dataset.scene && {RESTS}")
             browser.run(WATCH_SCRIPT)
             browser.click("#edit-toggle")
@@ -82,7 +67,6 @@ def main() -> None:
                     spread = f"{statistics.median(found):.0f} | {max(found):.0f}"
                     rows.append(f"| {2**depth}³ | {tool} | {size} | {len(found)} | {spread} |")
                     print(rows[-1], flush=True)
-    server.shutdown()
     head = [
         "# Edits on the static page",
         "",
