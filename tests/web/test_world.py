@@ -156,7 +156,7 @@ def test_an_edit_without_room_is_refused_and_changes_nothing() -> None:
 @pytest.mark.parametrize(
     ("step", "problem"),
     [
-        (["set", [8, 0, 0], [1]], "a voxel lies beyond the world of 8 voxels a side"),
+        (["set", [8, 0, 0], [1]], "a voxel lies beyond the world of 8 voxels per side"),
         (["set", [0.5, 0, 0], [1]], "each voxel must have three whole numbers and a material"),
         (["set", [0, 0, 0], [6]], "material must be 0 … 5, not 6"),
         (["paint", {"sphere": {"centre": [1, 1, 1], "radius": 1}}, 0], "material must be 1 … 5, not 0"),

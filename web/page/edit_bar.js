@@ -8,7 +8,7 @@ import { $, all, element, makeToolbar, pressed } from "./elements.js";
 /** @typedef {{ tool: ToolChoice, size: number, material: number }} Choice */
 
 /** What the controls do. @typedef {{ choose: (some: Partial<Choice>) => void, addColour: (colour: number[]) => void,
- * move: (way: "undo" | "redo") => void, close: () => void }} EditActions */
+ * move: (way: "undo" | "redo") => void }} EditActions */
 
 /** Voxels across. */
 export const SIZES = [1, 2, 3, 5, 7, 9, 13, 17, 25, 33, 49, 65];

@@ -33,7 +33,6 @@ export class EditMode {
       addColour: (colour) =>
         this.#try(async () => this.choose({ material: (await this.#editor?.addMaterial(colour)) ?? 1 })),
       move: (way) => this.#try(async () => this.#editor?.move(way)),
-      close: () => this.toggle(),
     });
     this.pointer = new EditPointer(gestures, {
       tool: (button) => this.#toolOf(button),

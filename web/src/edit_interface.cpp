@@ -64,7 +64,8 @@ EXPORT(vx_world_set) int vx_world_set(const int32_t* points, const uint8_t* mate
         const std::vector<int64_t> places(points, points + 3 * count);
         const int64_t side = int64_t{1} << begun().depth();
         if (std::any_of(places.begin(), places.end(), [&](int64_t at) { return at < 0 || at >= side; }))
-            throw std::invalid_argument("a voxel lies beyond the world of " + std::to_string(side) + " voxels a side");
+            throw std::invalid_argument("a voxel lies beyond the world of " + std::to_string(side) +
+                                        " voxels per side");
         return begun().set(places.data(), materials, count);
     });
 }
