@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from fakes.static_page import EXAMPLES, frame_of, notice, opened, registers, rests, saved, shown, shows_exactly
+from fakes.static_page import EXAMPLES, frame_of, notice, opened, registers, rests, saved, show, shown, shows_exactly
 
 import voxrt
 from voxrt.octree import Box, Sphere
@@ -324,3 +324,30 @@ def test_walk_stands_on_the_ground_that_is_dug_away(page: Edited) -> None:
     rests(browser)
     assert browser.run("return document.querySelector('#stage').dataset.edition") == "1"
     assert browser.run("return window.voxrt.view().fov") == pytest.approx(35)
+
+
+def test_an_edited_memory_keeps_what_its_manifest_says_of_the_picture(browser: Browser, tmp_path: Path) -> None:
+    rom = voxrt.build(EXAMPLES / "dog.usda", tmp_path).rom
+    known = json.loads((tmp_path / "dog.json").read_text())
+    known["view"] = {"position": [300, 900, -900], "look": [0, -60, 90], "right": [-1, 0, 0], "up": [0, 1, 1]}
+    known["lighting"] = {"position": [9, 9, 9], "ambient": 40, "on": False, "flat": True, "bounces": 0, "faces": None}
+    (tmp_path / "dog.json").write_text(json.dumps(known))
+    opened(browser)
+    show(browser, tmp_path / "dog.mem", tmp_path / "dog.json", depth=rom.octree.depth)
+    page = Edited(browser, rom)
+    size = int(browser.run("return document.querySelector('#edit output').textContent"))
+    page.use("dig", size)
+    browser.click("#frame")
+    rests(browser)
+    place = page.middle(0, -20)
+    page.expect(place, "dig")
+    browser.mouse([place])
+    page.waits(1)
+    folder = tmp_path / "saved"
+    saved(browser, folder, "#save-mem", "dog.mem")
+    manifest = json.loads(saved(browser, folder, "#save-manifest", "dog.json"))
+    assert (manifest["view"], manifest["lighting"]) == (known["view"], known["lighting"])
+    read, warnings = voxrt.read_rom(folder / "dog.mem")
+    assert warnings == ()
+    assert np.array_equal(read.octree.words, page.world.rom().octree.words)
+    assert (read.materials, read.grid.voxel_size) == (rom.materials, rom.grid.voxel_size)
