@@ -22,7 +22,7 @@ from pathlib import Path
 
 from board_files import add_boards
 from build_hardware import build_hardware
-from build_voxrt import build, build_view
+from build_voxrt import build, build_edit, build_view
 from compiler import BUILD, ROOT
 
 import voxrt
@@ -42,7 +42,7 @@ SHARED = (
     "camera.js", "camera_text.js", "controls.css", "copy_address.js", "crc32.js", "drop.js", "elements.js",
     "events.js", "figures.js", "flight.js", "frame_requests.js", "gestures.js", "glide.js", "icon.svg", "light.js",
     "navigation.js", "notices.js", "picture.js", "pilot.js", "resolution.js", "save.js", "style.css", "tools.js",
-    "vectors.js", "viewpoint.js", "views.js",
+    "vectors.js", "viewpoint.js", "views.js", "walk.js",
 )  # fmt: skip
 """Files of the server's page."""
 
@@ -57,7 +57,7 @@ EXAMPLES = {
 
 def main() -> None:
     """Build the modules, and put the site together anew."""
-    make_site(build(), build_hardware("tiny"))
+    make_site(build(), build_edit(), build_hardware("tiny"))
     files = [path for path in SITE.rglob("*") if path.is_file()]
     print(f"{SITE.relative_to(ROOT)}: {len(files)} files, {sum(path.stat().st_size for path in files):,} bytes")
 
