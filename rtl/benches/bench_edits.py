@@ -15,7 +15,7 @@ from core_driver import CAMERA, COLOURS, Core, scene
 from oracles.ray import render
 
 FRAMES = int(os.environ.get("EDITED_FRAMES", "16"))
-SIZE, DEPTH = (13, 19), 3
+SIZE, DEPTH = (9, 11), 3
 BLOCKS = 150  # of the memory; the first one has the words of roots
 
 
