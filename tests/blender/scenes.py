@@ -92,7 +92,10 @@ def geometry_nodes(owner, *, realize):
     )
     box.inputs["Size"].default_value = (0.5, 0.4, 0.3)
     links.new(start.outputs[0], place.inputs["Points"])
-    links.new(box.outputs["Mesh"], place.inputs["Instance"])
+    coat = nodes.new("GeometryNodeSetMaterial")
+    coat.inputs["Material"].default_value = owner.data.materials[0]
+    links.new(box.outputs["Mesh"], coat.inputs["Geometry"])
+    links.new(coat.outputs[0], place.inputs["Instance"])
     last = place.outputs["Instances"]
     if realize:
         real = nodes.new("GeometryNodeRealizeInstances")
