@@ -11,7 +11,7 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="Blender's module bpy is not here: make blender-test")
 
 import voxrt  # noqa: E402
-from blender import scenes  # noqa: E402
+import blender_scenes as scenes  # noqa: E402
 from voxrt.voxelize.formats.blend import isolated  # noqa: E402
 from voxrt.voxelize.formats.reader_process.limits import Limits  # noqa: E402
 

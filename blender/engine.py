@@ -1,0 +1,126 @@
+"""The render engine "voxrt": F12, and the viewport while one edits."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+import numpy as np
+
+import voxrt
+from voxrt.views.viewpoint import ViewpointError, authored_camera
+from voxrt.voxelize.formats.blend.views import read_viewpoint
+from voxrt.voxelize.warning_log import WarningLog
+
+from .memory import LATEST, build_depsgraph
+from .pictures import View, combined, material_index
+
+ERRORS = (voxrt.AssetError, voxrt.DoesNotFitError, voxrt.SimulatorError, ViewpointError, ValueError)
+"""What a scene can do wrong: one line each."""
+
+_MATERIAL_PASSES = ("Material Index", "IndexMA")  # its name in Blender 5, and before
+
+
+class VoxrtEngine(bpy.types.RenderEngine):
+    """Renders the octree memory of a scene by the exact model of the hardware."""
+
+    bl_idname = "VOXRT"
+    bl_label = "voxrt"
+    bl_use_preview = False
+    bl_use_eevee_viewport = True  # materials are shown by EEVEE until the view is "Rendered"
+    bl_use_shading_nodes_custom = False
+
+    def render(self, depsgraph: Any) -> None:  # noqa: ANN401 - bpy.types.Depsgraph
+        """Render a picture with its passes."""
+        try:
+            view = final_view(depsgraph, self)
+            frame = view.frame()
+        except ERRORS as error:
+            self.report({"ERROR"}, f"voxrt: {error}")
+            return
+        if self.test_break():
+            return
+        width, height = view.size
+        result = self.begin_result(0, 0, width, height)
+        passes = {one.name: one for one in result.layers[0].passes}
+        _fill(passes["Combined"], combined(frame))
+        if "Depth" in passes:
+            _fill(passes["Depth"], view.depth())
+        for name in _MATERIAL_PASSES:
+            if name in passes:
+                _fill(passes[name], material_index(frame))
+        self.end_result(result)
+        self.update_stats("", f"{len(view.result.octree.words):,} words, depth {view.result.octree.depth}")
+
+    def update_render_passes(self, scene: Any = None, renderlayer: Any = None) -> None:  # noqa: ANN401 - of bpy
+        """Tell the compositor which passes there are."""
+        self.register_pass(scene, renderlayer, "Combined", 4, "RGBA", "COLOR")
+        if renderlayer.use_pass_z:
+            self.register_pass(scene, renderlayer, "Depth", 1, "Z", "VALUE")
+        if renderlayer.use_pass_material_index:
+            name = _MATERIAL_PASSES[0 if bpy.app.version >= (5, 0, 0) else 1]
+            self.register_pass(scene, renderlayer, name, 1, "X", "VALUE")
+
+
+def final_view(depsgraph: Any, engine: Any = None) -> View:  # noqa: ANN401 - of bpy
+    """Return the view of a render: the memory of what it shows, at the scene's camera, size and frame.
+
+    A memory of the animation is taken where there is one for this frame. `engine` hears of the stages. Raise AssetError
+    for a camera that cannot be used, and what :func:`~.memory.build_depsgraph` raises.
+    """
+    scene = depsgraph.scene
+    size = render_size(scene.render)
+    log = WarningLog()
+    name = scene.original.name
+    if scene.camera is None:
+        raise voxrt.AssetError(name, "the scene has no camera", fix="add one")
+    viewpoint = read_viewpoint(depsgraph, scene.camera, log)
+    if viewpoint is None:
+        problem = "; ".join(one.message for one in log.warnings())
+        raise voxrt.AssetError(name, problem, place=scene.camera.name, fix="make its lens a perspective one")
+    samples = int(scene.voxrt.samples)
+    made = LATEST.animations.get(name) if scene.voxrt.use_animation else None
+    root = None if made is None else made.root(scene.frame_current)
+    if made is not None and root is not None:
+        result = made.result
+    else:
+        if engine is not None:
+            engine.update_stats("", "building the octree memory")
+        result, root = build_depsgraph(depsgraph), 0
+    assert result.rom.grid is not None
+    camera = authored_camera(viewpoint, result.rom.grid, size)
+    return View(result, camera, size, samples, scene.render.film_transparent, root)
+
+
+def render_size(render: Any) -> tuple[int, int]:  # noqa: ANN401 - bpy.types.RenderSettings
+    """Return the columns and rows of a render."""
+    share = render.resolution_percentage
+    return max(1, render.resolution_x * share // 100), max(1, render.resolution_y * share // 100)
+
+
+def _fill(one: Any, pixels: np.ndarray) -> None:  # noqa: ANN401 - bpy.types.RenderPass
+    one.rect.foreach_set(np.ascontiguousarray(pixels.reshape(-1), np.float32))
+
+
+def _shared_panels() -> list[Any]:
+    """Return Blender's own panels that suit every engine: size, output, camera, world, materials."""
+    unsuited = {"VIEWLAYER_PT_filter", "VIEWLAYER_PT_layer_passes"}
+    return [
+        panel
+        for panel in bpy.types.Panel.__subclasses__()
+        if "BLENDER_RENDER" in getattr(panel, "COMPAT_ENGINES", ()) and panel.__name__ not in unsuited
+    ]
+
+
+def register() -> None:
+    """Register the engine, and show the panels that suit it."""
+    bpy.utils.register_class(VoxrtEngine)
+    for panel in _shared_panels():
+        panel.COMPAT_ENGINES.add(VoxrtEngine.bl_idname)
+
+
+def unregister() -> None:
+    """Undo :func:`register`."""
+    for panel in _shared_panels():
+        panel.COMPAT_ENGINES.discard(VoxrtEngine.bl_idname)
+    bpy.utils.unregister_class(VoxrtEngine)

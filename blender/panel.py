@@ -1,0 +1,9 @@
+"""Operators."""
+
+
+def register() -> None:
+    """Register."""
+
+
+def unregister() -> None:
+    """Unregister."""

@@ -1,0 +1,82 @@
+"""What a scene says about its memory: the options of a build, as properties of Blender's scene."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, IntProperty, PointerProperty, StringProperty
+
+import voxrt
+from voxrt.voxelize.formats.blend.views import Daylight
+
+
+def _choices(*names: str) -> list[tuple[str, str, str]]:
+    return [(name, name, "") for name in names]
+
+
+def _budgets() -> list[tuple[str, str, str]]:
+    boards = [(name, name, f"{words:,} words") for name, words in voxrt.BOARDS.items()]
+    return [("none", "none", "As many words as the scene takes"), *boards]
+
+
+class VoxrtSettings(bpy.types.PropertyGroup):
+    """The settings of the panel."""
+
+    depth: IntProperty(name="Depth", default=7, min=1, max=12, description="Levels of the octree")  # type: ignore[valid-type]
+    rule: EnumProperty(  # type: ignore[valid-type]
+        name="Rule", items=_choices("touch", "centre", "half"), description="Which voxels solids fill"
+    )
+    fill: EnumProperty(  # type: ignore[valid-type]
+        name="Fill", items=_choices("auto", "solid", "surface", "together"), description="What becomes of the inside"
+    )
+    colours: IntProperty(  # type: ignore[valid-type]
+        name="Colours", default=32, min=1, max=254, description="Materials made of textures and colour attributes"
+    )
+    bake: BoolProperty(  # type: ignore[valid-type]
+        name="Bake light", description="Give every voxel the colour that it has under the sun and the sky"
+    )
+    budget: EnumProperty(name="Budget", items=_budgets(), description="The board that must hold the memory")  # type: ignore[valid-type]
+    samples: EnumProperty(  # type: ignore[valid-type]
+        name="Samples", items=_choices("1", "2", "4"), description="Rays per pixel on each axis of a render"
+    )
+    address: StringProperty(  # type: ignore[valid-type]
+        name="Send to",
+        default="http://127.0.0.1:8080",
+        description="A running voxrt serve, or a board: serial:PORT, tcp://HOST:PORT",
+    )
+    live: BoolProperty(name="Live", description="Send every change of the scene")  # type: ignore[valid-type]
+    use_animation: BoolProperty(  # type: ignore[valid-type]
+        name="Render from its memory", default=True, description="Render the frames of the animation that was built"
+    )
+
+
+def build_options(scene: Any, daylight: Daylight) -> voxrt.BuildOptions:  # noqa: ANN401 - bpy.types.Scene
+    """Return the options of a scene's build: its settings, and its own sun and sky for baked light."""
+    chosen = scene.voxrt
+    light: dict[str, Any] = {}
+    if chosen.bake:
+        light = {"sun": daylight.sun or (0.0, 0.0, 0.0)}
+        if daylight.sky_text is not None:
+            light["sky"] = daylight.sky_text
+    return voxrt.BuildOptions(
+        depth=chosen.depth,
+        rule=chosen.rule,
+        fill=chosen.fill,
+        colours=chosen.colours,
+        bake=chosen.bake,
+        budget=None if chosen.budget == "none" else chosen.budget,
+        **light,
+    )
+
+
+def register() -> None:
+    """Register the settings, as `voxrt` of every scene."""
+    bpy.utils.register_class(VoxrtSettings)
+    bpy.types.Scene.voxrt = PointerProperty(type=VoxrtSettings)
+
+
+def unregister() -> None:
+    """Undo :func:`register`."""
+    del bpy.types.Scene.voxrt
+    bpy.utils.unregister_class(VoxrtSettings)
