@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.voxelize.formats.blend.materials import SurfaceMaterial
+    from voxrt.voxelize.mesh import Mesh
     from voxrt.voxelize.scene import Viewpoint
 
 _WITHOUT_VOXELS = {
@@ -71,7 +72,7 @@ def read_depsgraph(
     DoesNotFitError
         More than 255 materials.
     """
-    return _Reader(depsgraph, named, path or name, opaque_from).scene(name)
+    return SceneReader(named, path or name, opaque_from).scene(depsgraph, name)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -85,9 +86,20 @@ class _Placed:
     collider: Collider | None
 
 
-class _Reader:
-    def __init__(self, depsgraph: Any, named: Any, path: object, opaque_from: float) -> None:  # noqa: ANN401
-        self._depsgraph = depsgraph
+@dataclass(frozen=True, slots=True)
+class _Instance:
+    """An object that is no instance, in the place of a ``bpy.types.DepsgraphObjectInstance``."""
+
+    object: Any
+    matrix_world: Any
+    is_instance: bool = False
+    show_self: bool = True
+
+
+class SceneReader:
+    """Reads a scene, and single objects of it again. Arguments are those of :func:`read_depsgraph`."""
+
+    def __init__(self, named: Any, path: object, opaque_from: float = OPAQUE_FROM) -> None:  # noqa: ANN401 - of bpy
         self._path = path
         self._opaque_from = opaque_from
         self._log = WarningLog()
@@ -95,13 +107,14 @@ class _Reader:
         self._images = Images(path, self._log)
         self._materials = Materials(named, self._log, self._error, opaque_from)
         self._arrays: dict[int, MeshArrays] = {}  # by the address of the mesh
-        self._colliders: dict[tuple[int, str], Collider | None] = {}
+        self._colliders: dict[tuple[int, str], Collider | None] = {}  # by the row of the mesh
         self._rows: dict[tuple[object, ...], int] = {}
         self._loaded: list[LoadedMesh] = []
 
-    def scene(self, name: str) -> Scene:
-        things = [one for instance in self._depsgraph.object_instances if (one := self._placed(instance)) is not None]
-        cameras = self._cameras()
+    def scene(self, depsgraph: Any, name: str) -> Scene:  # noqa: ANN401 - bpy.types.Depsgraph
+        """Read a whole scene, as :func:`read_depsgraph` does; once."""
+        things = [one for instance in depsgraph.object_instances if (one := self._placed(instance)) is not None]
+        cameras = self._cameras(depsgraph)
         meshes = assign_materials(self._loaded, self._table, self._log, self._opaque_from)
         repeats = Counter(one.name for one in things)
         numbers: Counter[str] = Counter()
@@ -114,24 +127,43 @@ class _Reader:
             if repeats[called] > 1:
                 called = f"{called} [{numbers[called]}]"
                 numbers[one.name] += 1
-            material = int(mesh.materials[0])
-            collider = one.collider
-            if one.properties.voxrt_collider is not None:
-                collider = collider_around(one.properties.voxrt_collider, mesh.positions, mesh.triangles)
-            if collider is not None and (mesh.materials != material).any():
-                self._log.add("collider-material", "colliders of objects with several materials took the first of them")
-            colliders = () if collider is None else (collider,)
-            objects.append(
-                SceneObject(called, mesh, one.transform, colliders, material, rule=one.properties.voxrt_rule)
-            )
+            objects.append(self._object(called, one, mesh))
         if not objects:
             raise AssetError(self._path, "has no triangles to voxelize", fix="check that renders show a mesh")
         materials = self._table.materials()
-        sky = read_daylight(self._depsgraph).sky
+        sky = read_daylight(depsgraph).sky
         if sky is not None:
             materials = (Material(materials[0].name, sky), *materials[1:])
         viewpoint = cameras[0] if cameras else None
         return Scene(name, tuple(objects), materials, self._log.warnings(), viewpoint=viewpoint, cameras=cameras)
+
+    def again(self, one: Any) -> tuple[SceneObject, tuple[Material, ...]] | None:  # noqa: ANN401 - bpy.types.Object
+        """Read an evaluated object that was edited, and all materials so far.
+
+        None where it cannot be read by itself: it shows textures or colour attributes, or nothing.
+        """
+        if one.type != "MESH":
+            return None
+        self._arrays.pop(one.data.as_pointer(), None)
+        for key in [key for key in self._rows if key[0] == one.data.as_pointer()]:
+            del self._rows[key]
+        thing = self._placed(_Instance(one, one.matrix_world))
+        if thing is None or self._loaded[thing.mesh].appearance is not None:
+            return None
+        mesh = assign_materials([self._loaded[thing.mesh]], self._table, self._log, self._opaque_from)[0]
+        if not len(mesh.triangles):
+            return None
+        return self._object(thing.name, thing, mesh), self._table.materials()
+
+    def _object(self, name: str, one: _Placed, mesh: Mesh) -> SceneObject:
+        material = int(mesh.materials[0])
+        collider = one.collider
+        if one.properties.voxrt_collider is not None:
+            collider = collider_around(one.properties.voxrt_collider, mesh.positions, mesh.triangles)
+        if collider is not None and (mesh.materials != material).any():
+            self._log.add("collider-material", "colliders of objects with several materials took the first of them")
+        colliders = () if collider is None else (collider,)
+        return SceneObject(name, mesh, one.transform, colliders, material, rule=one.properties.voxrt_rule)
 
     def _error(self, place: str, problem: str, fix: str) -> AssetError:
         return AssetError(self._path, problem, place=place, fix=fix)
@@ -167,7 +199,7 @@ class _Reader:
         row = self._mesh(one, key, arrays, properties)
         collider = None
         if one.rigid_body is not None:
-            shape = key, one.rigid_body.collision_shape
+            shape = row, one.rigid_body.collision_shape
             if shape not in self._colliders:
                 self._colliders[shape] = rigid_collider(one.rigid_body, arrays, self._log)
             collider = self._colliders[shape]
@@ -260,15 +292,15 @@ class _Reader:
         flipped[..., 1] = 1.0 - flipped[..., 1]
         return texture, flipped
 
-    def _cameras(self) -> tuple[Viewpoint, ...]:
+    def _cameras(self, depsgraph: Any) -> tuple[Viewpoint, ...]:  # noqa: ANN401 - bpy.types.Depsgraph
         """Return the perspective cameras, the scene's own first."""
-        own = self._depsgraph.scene.camera
+        own = depsgraph.scene.camera
         found: list[Viewpoint] = []
-        for instance in self._depsgraph.object_instances:
+        for instance in depsgraph.object_instances:
             camera = instance.object
             if camera.type != "CAMERA" or instance.is_instance:
                 continue
-            viewpoint = read_viewpoint(self._depsgraph, camera, self._log)
+            viewpoint = read_viewpoint(depsgraph, camera, self._log)
             if viewpoint is not None:
                 is_own = own is not None and camera.name_full == own.name_full
                 found.insert(0 if is_own else len(found), viewpoint)

@@ -38,25 +38,34 @@ def read_viewpoint(depsgraph: Any, camera: Any, log: WarningLog) -> Viewpoint | 
         log.add("camera", "cameras without perspective were left out")
         return None
     render = depsgraph.scene.render
-    matrix = np.array(
-        camera.calc_matrix_camera(
-            depsgraph,
-            x=render.resolution_x,
-            y=render.resolution_y,
-            scale_x=render.pixel_aspect_x,
-            scale_y=render.pixel_aspect_y,
-        )
+    matrix = camera.calc_matrix_camera(
+        depsgraph,
+        x=render.resolution_x,
+        y=render.resolution_y,
+        scale_x=render.pixel_aspect_x,
+        scale_y=render.pixel_aspect_y,
     )
     if render.pixel_aspect_x != render.pixel_aspect_y:
         log.add("camera", "pixels that are not square were taken as square")
-    angle = math.degrees(2 * math.atan(1 / matrix[1, 1]))
-    # The projection's third column moves the picture by halves of its width and its height.
-    across = float(matrix[0, 2]) / 2 * render.resolution_x * render.pixel_aspect_x
-    shift = across / (render.resolution_y * render.pixel_aspect_y), float(matrix[1, 2]) / 2
-    viewpoint = camera_viewpoint(camera.name, placed_camera(camera.matrix_world), angle, shift)
+    size = render.resolution_x * render.pixel_aspect_x, render.resolution_y * render.pixel_aspect_y
+    viewpoint = projected_viewpoint(camera.name, camera.matrix_world, matrix, size)
     if viewpoint is None:
         log.add("camera", "cameras whose transform or field of view makes no picture were left out")
     return viewpoint
+
+
+def projected_viewpoint(name: str, place: Any, projection: Any, size: tuple[float, float]) -> Viewpoint | None:  # noqa: ANN401
+    """Return the viewpoint of a projection matrix, for pictures of so wide and so high; None where it makes none.
+
+    `place` takes the frame in which one looks along -z to Blender's.
+    """
+    matrix = np.array(projection, np.float64)
+    if matrix[3, 3] != 0 or not matrix[1, 1] > 0:
+        return None
+    angle = math.degrees(2 * math.atan(1 / matrix[1, 1]))
+    # The third column moves the picture by halves of its width and its height.
+    shift = float(matrix[0, 2]) / 2 * size[0] / size[1], float(matrix[1, 2]) / 2
+    return camera_viewpoint(name, placed_camera(place), angle, shift)
 
 
 def read_daylight(depsgraph: Any) -> Daylight:  # noqa: ANN401 - bpy.types.Depsgraph
