@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import voxrt
-from voxrt.octree import Piece, World, build
+from voxrt.octree import Octree, Piece, World, build
 from voxrt.voxelize import BoxCollider, Grid, voxelize
 from voxrt.voxelize.collider_shapes import bounding_points
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from voxrt.octree import Patch
     from voxrt.voxelize import Material, Scene, SceneObject
 
 _MARGIN = 1  # voxels around an object's box: boxes are of rounded numbers
@@ -32,7 +33,9 @@ class EditedMemory:
         self._scene = scene
         self._options = options
         self._grid = result.rom.grid
+        self._start = result.rom
         self._world = World(result.rom, undo_steps=0)
+        self._root_word = int(result.rom.octree.words[0])
         self._boxes = np.array([self._box(one) for one in scene.objects])
         self._numbers = {one.name: number for number, one in enumerate(scene.objects)}
         self._palette = len(scene.materials) == len(result.rom.materials)
@@ -65,9 +68,21 @@ class EditedMemory:
         self._scene, self._boxes = scene, boxes
         return True
 
+    def commit(self) -> Patch:
+        """Make the memory as it is the one that :meth:`rom` shows; return what memories that show the last must write."""
+        last = self._world.live_roots
+        patch = self._world.commit()
+        for root in last:
+            if root != patch.root:
+                self._world.release(root)
+        self._root_word = patch.root_word
+        return patch
+
     def rom(self) -> voxrt.Rom:
-        """Return the memory as it is."""
-        return self._world.rom()
+        """Return the memory of the last commit. Its free blocks are in it, too: a whole build has fewer words."""
+        words = self._world.image.copy()
+        words[0] = self._root_word
+        return replace(self._start, octree=Octree(self._grid.depth, words), materials=self._world.materials)
 
     def _make(self, scene: Scene, low: NDArray[np.int64], high: NDArray[np.int64]) -> None:
         """Make the voxels of a box again, of a scene with the objects that reach into it."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Any
 
 import bpy
@@ -14,6 +15,7 @@ from voxrt.voxelize.warning_log import WarningLog
 
 from .memory import LATEST, build_depsgraph
 from .pictures import View, combined, material_index
+from .viewport import REST_SECONDS, Looking, Viewport, draw
 
 ERRORS = (voxrt.AssetError, voxrt.DoesNotFitError, voxrt.SimulatorError, ViewpointError, ValueError)
 """What a scene can do wrong: one line each."""
@@ -51,6 +53,43 @@ class VoxrtEngine(bpy.types.RenderEngine):
                 _fill(passes[name], material_index(frame))
         self.end_result(result)
         self.update_stats("", f"{len(view.result.octree.words):,} words, depth {view.result.octree.depth}")
+
+    def __init__(self, *arguments: Any, **keywords: Any) -> None:  # noqa: ANN401
+        super().__init__(*arguments, **keywords)
+        self._viewport = Viewport()
+        self._problem = ""
+
+    def view_update(self, _: Any, depsgraph: Any) -> None:  # noqa: ANN401 - of bpy
+        """Take over what changed in the scene."""
+        try:
+            self._viewport.update(depsgraph)
+            self._problem = ""
+        except ERRORS as error:
+            self._problem = str(error)
+
+    def view_draw(self, context: Any, depsgraph: Any) -> None:  # noqa: ANN401 - of bpy
+        """Draw the viewport: fewer pixels while something moves, exact at rest."""
+        looking = Looking.of(context.region, context.region_data)
+        self._viewport.look(looking)
+        try:
+            exact = self._viewport.rest(depsgraph)
+            view = self._viewport.view(looking, coarse=not exact)
+            frame = None if view is None else view.frame()
+        except ERRORS as error:
+            self._problem, exact, frame = str(error), True, None
+        if frame is None:
+            self.update_stats("voxrt", self._problem or "views without perspective are not rendered")
+            return
+        self.bind_display_space_shader(depsgraph.scene)
+        draw(combined(frame), looking.size)
+        self.unbind_display_space_shader()
+        self.update_stats("voxrt", "exact" if exact else "")
+        if not exact:
+            bpy.app.timers.register(self._draw_again, first_interval=REST_SECONDS)
+
+    def _draw_again(self) -> None:
+        with suppress(ReferenceError):  # the viewport may have been closed
+            self.tag_redraw()
 
     def update_render_passes(self, scene: Any = None, renderlayer: Any = None) -> None:  # noqa: ANN401 - of bpy
         """Tell the compositor which passes there are."""

@@ -20,23 +20,45 @@ def _budgets() -> list[tuple[str, str, str]]:
     return [("none", "none", "As many words as the scene takes"), *boards]
 
 
+def _changed(settings: Any, _: Any) -> None:  # noqa: ANN401 - of bpy
+    """Let viewports know that the scene is built in another way."""
+    settings.id_data.update_tag()
+
+
 class VoxrtSettings(bpy.types.PropertyGroup):
     """The settings of the panel."""
 
-    depth: IntProperty(name="Depth", default=7, min=1, max=12, description="Levels of the octree")  # type: ignore[valid-type]
+    depth: IntProperty(  # type: ignore[valid-type]
+        name="Depth", default=7, min=1, max=12, update=_changed, description="Levels of the octree"
+    )
     rule: EnumProperty(  # type: ignore[valid-type]
-        name="Rule", items=_choices("touch", "centre", "half"), description="Which voxels solids fill"
+        name="Rule",
+        items=_choices("touch", "centre", "half"),
+        update=_changed,
+        description="Which voxels solids fill",
     )
     fill: EnumProperty(  # type: ignore[valid-type]
-        name="Fill", items=_choices("auto", "solid", "surface", "together"), description="What becomes of the inside"
+        name="Fill",
+        items=_choices("auto", "solid", "surface", "together"),
+        update=_changed,
+        description="What becomes of the inside",
     )
     colours: IntProperty(  # type: ignore[valid-type]
-        name="Colours", default=32, min=1, max=254, description="Materials made of textures and colour attributes"
+        name="Colours",
+        default=32,
+        min=1,
+        max=254,
+        update=_changed,
+        description="Materials made of textures and colour attributes",
     )
     bake: BoolProperty(  # type: ignore[valid-type]
-        name="Bake light", description="Give every voxel the colour that it has under the sun and the sky"
+        name="Bake light",
+        update=_changed,
+        description="Give every voxel the colour that it has under the sun and the sky",
     )
-    budget: EnumProperty(name="Budget", items=_budgets(), description="The board that must hold the memory")  # type: ignore[valid-type]
+    budget: EnumProperty(  # type: ignore[valid-type]
+        name="Budget", items=_budgets(), update=_changed, description="The board that must hold the memory"
+    )
     samples: EnumProperty(  # type: ignore[valid-type]
         name="Samples", items=_choices("1", "2", "4"), description="Rays per pixel on each axis of a render"
     )

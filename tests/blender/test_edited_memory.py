@@ -72,6 +72,7 @@ def test_edits_are_those_of_a_whole_build(extension, options):
         bpy.context.view_layer.update()
         things[number].data.update()
         assert edited(reader, memory, f"thing {number}")
+        memory.commit()
         rom = memory.rom()
         tree, materials = whole(result.rom.grid, options)
         np.testing.assert_array_equal(shown(rom.octree, rom.materials), shown(tree, materials))
