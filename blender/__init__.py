@@ -4,9 +4,9 @@
 :mod:`voxrt.voxelize.formats.blend`, and everything behind it is voxrt's own.
 """
 
-from . import engine, operators, panel, settings
+from . import engine, live, octants, operators, panel, settings
 
-_PARTS = (settings, engine, operators, panel)
+_PARTS = (settings, engine, operators, panel, octants, live)
 
 
 def register() -> None:

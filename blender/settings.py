@@ -68,6 +68,7 @@ class VoxrtSettings(bpy.types.PropertyGroup):
         description="A running voxrt serve, or a board: serial:PORT, tcp://HOST:PORT",
     )
     live: BoolProperty(name="Live", description="Send every change of the scene")  # type: ignore[valid-type]
+    octants: BoolProperty(name="Octants", description="Draw the cells of the octree in viewports")  # type: ignore[valid-type]
     use_animation: BoolProperty(  # type: ignore[valid-type]
         name="Render from its memory", default=True, description="Render the frames of the animation that was built"
     )
