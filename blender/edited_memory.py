@@ -69,7 +69,7 @@ class EditedMemory:
         return True
 
     def commit(self) -> Patch:
-        """Make the memory as it is the one that :meth:`rom` shows; return what memories that show the last must write."""
+        """Make the voxels as they are those of :meth:`rom`; return what memories with the last ones must write."""
         last = self._world.live_roots
         patch = self._world.commit()
         for root in last:

@@ -32,7 +32,7 @@ class VoxrtEngine(bpy.types.RenderEngine):
     bl_use_eevee_viewport = True  # materials are shown by EEVEE until the view is "Rendered"
     bl_use_shading_nodes_custom = False
 
-    def render(self, depsgraph: Any) -> None:  # noqa: ANN401 - bpy.types.Depsgraph
+    def render(self, depsgraph: Any) -> None:
         """Render a picture with its passes."""
         try:
             view = final_view(depsgraph, self)
@@ -54,12 +54,12 @@ class VoxrtEngine(bpy.types.RenderEngine):
         self.end_result(result)
         self.update_stats("", f"{len(view.result.octree.words):,} words, depth {view.result.octree.depth}")
 
-    def __init__(self, *arguments: Any, **keywords: Any) -> None:  # noqa: ANN401
+    def __init__(self, *arguments: Any, **keywords: Any) -> None:
         super().__init__(*arguments, **keywords)
         self._viewport = Viewport()
         self._problem = ""
 
-    def view_update(self, _: Any, depsgraph: Any) -> None:  # noqa: ANN401 - of bpy
+    def view_update(self, _: Any, depsgraph: Any) -> None:
         """Take over what changed in the scene."""
         try:
             self._viewport.update(depsgraph)
@@ -67,7 +67,7 @@ class VoxrtEngine(bpy.types.RenderEngine):
         except ERRORS as error:
             self._problem = str(error)
 
-    def view_draw(self, context: Any, depsgraph: Any) -> None:  # noqa: ANN401 - of bpy
+    def view_draw(self, context: Any, depsgraph: Any) -> None:
         """Draw the viewport: fewer pixels while something moves, exact at rest."""
         looking = Looking.of(context.region, context.region_data)
         self._viewport.look(looking)
@@ -91,7 +91,7 @@ class VoxrtEngine(bpy.types.RenderEngine):
         with suppress(ReferenceError):  # the viewport may have been closed
             self.tag_redraw()
 
-    def update_render_passes(self, scene: Any = None, renderlayer: Any = None) -> None:  # noqa: ANN401 - of bpy
+    def update_render_passes(self, scene: Any = None, renderlayer: Any = None) -> None:
         """Tell the compositor which passes there are."""
         self.register_pass(scene, renderlayer, "Combined", 4, "RGBA", "COLOR")
         if renderlayer.use_pass_z:
@@ -101,7 +101,7 @@ class VoxrtEngine(bpy.types.RenderEngine):
             self.register_pass(scene, renderlayer, name, 1, "X", "VALUE")
 
 
-def final_view(depsgraph: Any, engine: Any = None) -> View:  # noqa: ANN401 - of bpy
+def final_view(depsgraph: Any, engine: Any = None) -> View:
     """Return the view of a render: the memory of what it shows, at the scene's camera, size and frame.
 
     A memory of the animation is taken where there is one for this frame. `engine` hears of the stages. Raise AssetError
@@ -131,13 +131,13 @@ def final_view(depsgraph: Any, engine: Any = None) -> View:  # noqa: ANN401 - of
     return View(result, camera, size, samples, scene.render.film_transparent, root)
 
 
-def render_size(render: Any) -> tuple[int, int]:  # noqa: ANN401 - bpy.types.RenderSettings
+def render_size(render: Any) -> tuple[int, int]:
     """Return the columns and rows of a render."""
     share = render.resolution_percentage
     return max(1, render.resolution_x * share // 100), max(1, render.resolution_y * share // 100)
 
 
-def _fill(one: Any, pixels: np.ndarray) -> None:  # noqa: ANN401 - bpy.types.RenderPass
+def _fill(one: Any, pixels: np.ndarray) -> None:
     one.rect.foreach_set(np.ascontiguousarray(pixels.reshape(-1), np.float32))
 
 

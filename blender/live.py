@@ -18,7 +18,7 @@ class _Live:
         self._changed = 0.0
         self.sending = False
 
-    def note(self, scene: Any, depsgraph: Any) -> None:  # noqa: ANN401 - of bpy
+    def note(self, scene: Any, depsgraph: Any) -> None:
         """Take note of a change: a handler of updates of the dependency graph."""
         if self.sending or not scene.voxrt.live or not len(depsgraph.updates):
             return
@@ -50,7 +50,7 @@ def send_at_rest() -> float | None:
 
 
 @bpy.app.handlers.persistent  # type: ignore[untyped-decorator]
-def _updated(scene: Any, depsgraph: Any) -> None:  # noqa: ANN401 - of bpy
+def _updated(scene: Any, depsgraph: Any) -> None:
     LIVE.note(scene, depsgraph)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -43,12 +44,12 @@ class Latest:
 LATEST = Latest()
 
 
-def scene_name(scene: Any) -> str:  # noqa: ANN401 - bpy.types.Scene
+def scene_name(scene: Any) -> str:
     """Return what the memory of a scene is called: the file's name, else the scene's."""
     return Path(bpy.data.filepath).stem or str(scene.name)
 
 
-def build_depsgraph(depsgraph: Any) -> voxrt.BuildResult:  # noqa: ANN401 - bpy.types.Depsgraph
+def build_depsgraph(depsgraph: Any) -> voxrt.BuildResult:
     """Build the memory of what a dependency graph shows.
 
     Raise AssetError or DoesNotFitError, as :func:`voxrt.build` does.
@@ -60,29 +61,22 @@ def build_depsgraph(depsgraph: Any) -> voxrt.BuildResult:  # noqa: ANN401 - bpy.
     return result
 
 
-def build_scene(context: Any) -> voxrt.BuildResult:  # noqa: ANN401 - bpy.types.Context
+def build_scene(context: Any) -> voxrt.BuildResult:
     """Build the memory of what a render of the context's scene shows."""
     return as_rendered(context.scene, context.view_layer, build_depsgraph)
 
 
-def build_animation(context: Any) -> Animation:  # noqa: ANN401 - bpy.types.Context
+def build_animation(context: Any) -> Animation:
     """Build one memory of all frames of the scene's range; the scene stays at its frame."""
     scene = context.scene
     before = scene.frame_current
-    frames = range(scene.frame_start, scene.frame_end + 1, scene.frame_step)
-    scenes, light = [], None
+    scenes = []
     try:
-        for frame in frames:
+        for frame in range(scene.frame_start, scene.frame_end + 1, scene.frame_step):
             scene.frame_set(frame)
-            scenes.append(
-                as_rendered(
-                    scene,
-                    context.view_layer,
-                    lambda depsgraph, name=f"{scene_name(scene)}_{frame}": read_depsgraph(
-                        depsgraph, bpy.data.materials, name
-                    ),
-                )
-            )
+            name = f"{scene_name(scene)}_{frame}"
+            read = partial(read_depsgraph, named=bpy.data.materials, name=name)
+            scenes.append(as_rendered(scene, context.view_layer, read))
         light = as_rendered(scene, context.view_layer, read_daylight)
     finally:
         scene.frame_set(before)

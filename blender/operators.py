@@ -29,7 +29,7 @@ class _Operator(bpy.types.Operator):
 
     bl_options: ClassVar[set[str]] = {"REGISTER"}
 
-    def execute(self, context: Any) -> set[str]:  # noqa: ANN401 - bpy.types.Context
+    def execute(self, context: Any) -> set[str]:
         """Run it, and report its errors."""
         try:
             self.report({"INFO"}, self.run(context))
@@ -38,7 +38,7 @@ class _Operator(bpy.types.Operator):
             return {"CANCELLED"}
         return {"FINISHED"}
 
-    def run(self, context: Any) -> str:  # noqa: ANN401 - bpy.types.Context
+    def run(self, context: Any) -> str:
         """Do what the operator does; return what it did in one line."""
         raise NotImplementedError
 
@@ -49,7 +49,7 @@ class VoxrtBuild(_Operator):
     bl_idname = "voxrt.build"
     bl_label = "Build"
 
-    def run(self, context: Any) -> str:  # noqa: ANN401, D102
+    def run(self, context: Any) -> str:  # noqa: D102
         return describe(build_scene(context))
 
 
@@ -59,10 +59,10 @@ class VoxrtCheck(_Operator):
     bl_idname = "voxrt.check"
     bl_label = "Check by hardware"
 
-    def run(self, context: Any) -> str:  # noqa: ANN401, D102
+    def run(self, context: Any) -> str:  # noqa: D102
         check = as_rendered(context.scene, context.view_layer, lambda depsgraph: final_view(depsgraph).check())
-        cost, pixels = check.rtl.cost, check.wrong.size
-        return f"{check.wrong_pixels} of {pixels:,} pixels differ, {cost.cycles / pixels:.2f} cycles per pixel"
+        cycles, pixels = check.rtl.cost.cycles or 0, check.wrong.size
+        return f"{check.wrong_pixels} of {pixels:,} pixels differ, {cycles / pixels:.2f} cycles per pixel"
 
 
 class VoxrtExport(_Operator):
@@ -74,13 +74,13 @@ class VoxrtExport(_Operator):
     filepath: StringProperty(subtype="FILE_PATH")  # type: ignore[valid-type]
     format: EnumProperty(name="Format", items=_FORMATS)  # type: ignore[valid-type]
 
-    def invoke(self, context: Any, _: Any) -> set[str]:  # noqa: ANN401 - of bpy
+    def invoke(self, context: Any, _: Any) -> set[str]:
         """Ask for the file."""
         self.filepath = f"{Path(bpy.data.filepath).stem or context.scene.name}{self.format}"
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
-    def run(self, context: Any) -> str:  # noqa: ANN401, D102
+    def run(self, context: Any) -> str:  # noqa: D102
         path = Path(bpy.path.abspath(self.filepath))
         if path.suffix.lower() not in {name for name, *_ in _FORMATS}:
             path = path.with_suffix(self.format)
@@ -96,7 +96,7 @@ class VoxrtAnimation(_Operator):
     bl_idname = "voxrt.animation"
     bl_label = "Build animation"
 
-    def run(self, context: Any) -> str:  # noqa: ANN401, D102
+    def run(self, context: Any) -> str:  # noqa: D102
         result = build_animation(context).result
         assert result.animation is not None
         return f"{len(result.animation.frames)} frames, {describe(result)}"
@@ -108,7 +108,7 @@ class VoxrtForget(_Operator):
     bl_idname = "voxrt.forget_animation"
     bl_label = "Forget animation"
 
-    def run(self, context: Any) -> str:  # noqa: ANN401, D102
+    def run(self, context: Any) -> str:  # noqa: D102
         LATEST.animations.pop(context.scene.name, None)
         return "frames are built one by one"
 
@@ -116,7 +116,7 @@ class VoxrtForget(_Operator):
 class _Command(_Operator):
     """An operator that builds the memory and runs a command of voxrt with it, while Blender goes on."""
 
-    def execute(self, context: Any) -> set[str]:  # noqa: ANN401, D102 - as above
+    def execute(self, context: Any) -> set[str]:
         folder = tempfile.TemporaryDirectory(prefix="voxrt-")
         file = Path(folder.name, "scene.blob")
         try:
@@ -133,7 +133,7 @@ class _Command(_Operator):
         self.report({"INFO" if succeeded else "ERROR"}, line)
         return {"FINISHED" if succeeded else "CANCELLED"}
 
-    def arguments(self, context: Any, file: Path) -> list[str]:  # noqa: ANN401 - bpy.types.Context
+    def arguments(self, context: Any, file: Path) -> list[str]:
         """Return the command and its arguments for a memory's file."""
         raise NotImplementedError
 
@@ -144,7 +144,7 @@ class VoxrtSend(_Command):
     bl_idname = "voxrt.send"
     bl_label = "Send"
 
-    def arguments(self, context: Any, file: Path) -> list[str]:  # noqa: ANN401, D102
+    def arguments(self, context: Any, file: Path) -> list[str]:  # noqa: D102
         return ["upload", str(file), "--to", context.scene.voxrt.address]
 
 
@@ -159,12 +159,12 @@ class VoxrtBitstream(_Command):
     )
     directory: StringProperty(subtype="DIR_PATH")  # type: ignore[valid-type]
 
-    def invoke(self, context: Any, _: Any) -> set[str]:  # noqa: ANN401 - of bpy
+    def invoke(self, context: Any, _: Any) -> set[str]:
         """Ask for the folder."""
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
-    def arguments(self, context: Any, file: Path) -> list[str]:  # noqa: ANN401, D102, ARG002
+    def arguments(self, context: Any, file: Path) -> list[str]:  # noqa: D102, ARG002
         return ["bitstream", str(file), "--board", self.board, "-o", bpy.path.abspath(self.directory)]
 
 

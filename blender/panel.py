@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import bpy
-
-import voxrt
 
 from .commands import WATCH
 from .engine import VoxrtEngine
@@ -22,6 +20,9 @@ from .operators import (
     boards_that_fit,
 )
 
+if TYPE_CHECKING:
+    import voxrt
+
 
 class _Panel(bpy.types.Panel):
     bl_space_type = "PROPERTIES"
@@ -29,7 +30,7 @@ class _Panel(bpy.types.Panel):
     bl_context = "render"
 
     @classmethod
-    def poll(cls, context: Any) -> bool:  # noqa: ANN401 - bpy.types.Context
+    def poll(cls, context: Any) -> bool:
         """Show it with the engine alone."""
         return bool(context.engine == VoxrtEngine.bl_idname)
 
@@ -39,7 +40,7 @@ class VOXRT_PT_memory(_Panel):  # noqa: N801 - Blender's form of names
 
     bl_label = "Octree memory"
 
-    def draw(self, context: Any) -> None:  # noqa: ANN401 - bpy.types.Context
+    def draw(self, context: Any) -> None:
         """Draw the settings and the figures."""
         layout, settings = self.layout, context.scene.voxrt
         layout.use_property_split = True
@@ -58,7 +59,7 @@ class VOXRT_PT_output(_Panel):  # noqa: N801
 
     bl_label = "Hardware"
 
-    def draw(self, context: Any) -> None:  # noqa: ANN401 - bpy.types.Context
+    def draw(self, context: Any) -> None:
         """Draw what exports and sends the memory."""
         layout, settings = self.layout, context.scene.voxrt
         layout.operator_menu_enum(VoxrtExport.bl_idname, "format")

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, PointerProperty, StringProperty
 
 import voxrt
-from voxrt.voxelize.formats.blend.views import Daylight
+
+if TYPE_CHECKING:
+    from voxrt.voxelize.formats.blend.views import Daylight
 
 
 def _choices(*names: str) -> list[tuple[str, str, str]]:
@@ -20,7 +22,7 @@ def _budgets() -> list[tuple[str, str, str]]:
     return [("none", "none", "As many words as the scene takes"), *boards]
 
 
-def _changed(settings: Any, _: Any) -> None:  # noqa: ANN401 - of bpy
+def _changed(settings: Any, _: Any) -> None:
     """Let viewports know that the scene is built in another way."""
     settings.id_data.update_tag()
 
@@ -32,10 +34,7 @@ class VoxrtSettings(bpy.types.PropertyGroup):
         name="Depth", default=7, min=1, max=12, update=_changed, description="Levels of the octree"
     )
     rule: EnumProperty(  # type: ignore[valid-type]
-        name="Rule",
-        items=_choices("touch", "centre", "half"),
-        update=_changed,
-        description="Which voxels solids fill",
+        name="Rule", items=_choices("touch", "centre", "half"), update=_changed, description="Which voxels solids fill"
     )
     fill: EnumProperty(  # type: ignore[valid-type]
         name="Fill",
@@ -74,7 +73,7 @@ class VoxrtSettings(bpy.types.PropertyGroup):
     )
 
 
-def build_options(scene: Any, daylight: Daylight) -> voxrt.BuildOptions:  # noqa: ANN401 - bpy.types.Scene
+def build_options(scene: Any, daylight: Daylight) -> voxrt.BuildOptions:
     """Return the options of a scene's build: its settings, and its own sun and sky for baked light."""
     chosen = scene.voxrt
     light: dict[str, Any] = {}

@@ -37,11 +37,9 @@ class Looking:
     size: tuple[int, int]
 
     @classmethod
-    def of(cls, region: Any, view: Any) -> Looking:  # noqa: ANN401 - bpy.types.Region, bpy.types.RegionView3D
+    def of(cls, region: Any, view: Any) -> Looking:
         """Return how a region looks."""
-        place, projection = (
-            tuple(map(tuple, one)) for one in (view.view_matrix.inverted(), view.window_matrix)
-        )
+        place, projection = (tuple(map(tuple, one)) for one in (view.view_matrix.inverted(), view.window_matrix))
         return cls(place, projection, (region.width, region.height))
 
 
@@ -57,7 +55,7 @@ class Viewport:
         self._moved = 0.0  # when something moved last
         self._looking: Looking | None = None
 
-    def update(self, depsgraph: Any) -> None:  # noqa: ANN401 - bpy.types.Depsgraph
+    def update(self, depsgraph: Any) -> None:
         """Take over what changed: one object at a time where that is all, else the whole scene.
 
         Raise what :func:`voxrt.build` raises.
@@ -66,7 +64,7 @@ class Viewport:
         if self._result is None or not self._take_edits(depsgraph):
             self._build(depsgraph)
 
-    def rest(self, depsgraph: Any) -> bool:  # noqa: ANN401 - bpy.types.Depsgraph
+    def rest(self, depsgraph: Any) -> bool:
         """Build the whole scene if its memory was edited, and nothing has moved for a while. Tell whether all is exact.
 
         Raise what :func:`voxrt.build` raises.
@@ -95,7 +93,7 @@ class Viewport:
         assert grid is not None
         return View(self._result, authored_camera(viewpoint, grid, (width, height)), (width, height))
 
-    def _build(self, depsgraph: Any) -> None:  # noqa: ANN401 - bpy.types.Depsgraph
+    def _build(self, depsgraph: Any) -> None:
         scene = depsgraph.scene.original
         self._options = build_options(scene, read_daylight(depsgraph))
         self._reader = SceneReader(bpy.data.materials, scene_name(scene))
@@ -105,7 +103,7 @@ class Viewport:
         self._exact = True
         LATEST.results[scene.name] = self._result
 
-    def _take_edits(self, depsgraph: Any) -> bool:  # noqa: ANN401 - bpy.types.Depsgraph
+    def _take_edits(self, depsgraph: Any) -> bool:
         """Make the voxels of edited objects again. False where the whole scene must be built."""
         assert self._reader is not None
         assert self._edited is not None

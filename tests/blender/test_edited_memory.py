@@ -8,10 +8,13 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="Blender's module bpy is not here: make blender-test")
 
 import blender_scenes as scenes  # noqa: E402
+
 import voxrt  # noqa: E402
 from voxrt.octree import to_dense  # noqa: E402
 from voxrt.voxelize import voxelize  # noqa: E402
 from voxrt.voxelize.formats.blend.scene import SceneReader  # noqa: E402
+
+pytestmark = pytest.mark.usefixtures("extension")
 
 
 def crowd():
@@ -56,7 +59,7 @@ def shown(tree, materials):
 
 
 @pytest.mark.parametrize("options", [{}, {"fill": "surface"}, {"fill": "solid"}])
-def test_edits_are_those_of_a_whole_build(extension, options):
+def test_edits_are_those_of_a_whole_build(options):
     options = voxrt.BuildOptions(depth=6, **options)
     things = crowd()
     reader, result, memory = opened(options)
@@ -78,7 +81,7 @@ def test_edits_are_those_of_a_whole_build(extension, options):
         np.testing.assert_array_equal(shown(rom.octree, rom.materials), shown(tree, materials))
 
 
-def test_what_needs_a_whole_build(extension):
+def test_what_needs_a_whole_build():
     """An object that leaves the grid, one with a texture, one that is not there; a rule that looks at neighbours."""
     options = voxrt.BuildOptions(depth=5)
     things = crowd()

@@ -10,9 +10,12 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="Blender's module bpy is not here: make blender-test")
 
 import blender_scenes as scenes  # noqa: E402
+
 import voxrt  # noqa: E402
 from voxrt.views.viewpoint import authored_camera  # noqa: E402
 from voxrt.voxelize.colour.srgb import srgb_from_linear  # noqa: E402
+
+pytestmark = pytest.mark.usefixtures("extension")
 
 
 def stage(size=(160, 120), **settings):
@@ -51,7 +54,7 @@ def passes_of(data):
     """Read an uncompressed OpenEXR file of 32-bit channels: passes by name, channels in the order of their names."""
     at, header = 8, {}
     while data[at]:
-        name, kind, rest = data[at:].split(b"\0", 2)
+        name, kind, _ = data[at:].split(b"\0", 2)
         at += len(name) + len(kind) + 2
         (length,) = struct.unpack_from("<i", data, at)
         header[name.decode()] = data[at + 4 : at + 4 + length]
@@ -85,7 +88,7 @@ def exported(tmp_path, result):
 
 
 @pytest.mark.parametrize("samples", ["1", "2"])
-def test_pixels_are_those_of_the_exported_memory(extension, tmp_path, samples):
+def test_pixels_are_those_of_the_exported_memory(tmp_path, samples):
     from voxrt_extension.engine import render_size
     from voxrt_extension.memory import LATEST
 
@@ -102,7 +105,7 @@ def test_pixels_are_those_of_the_exported_memory(extension, tmp_path, samples):
     assert (passes["Combined"]["A"] == 1).all()
 
 
-def test_passes_are_exact(extension, tmp_path):
+def test_passes_are_exact(tmp_path):
     """Depth and material of each pixel are those of the voxels that a marching oracle finds."""
     scene = stage(size=(64, 48))
     layer = bpy.context.view_layer
@@ -131,7 +134,7 @@ def test_passes_are_exact(extension, tmp_path):
         assert cells[tuple(np.floor(inside).astype(int))] == frame.material[row, column]
 
 
-def test_transparent_film(extension, tmp_path):
+def test_transparent_film(tmp_path):
     scene = stage()
     scene.render.film_transparent = True
     passes = rendered(tmp_path)
@@ -139,13 +142,13 @@ def test_transparent_film(extension, tmp_path):
     assert set(np.unique(alpha)) == {0.0, 1.0}
 
 
-def test_size_and_percentage(extension, tmp_path):
+def test_size_and_percentage(tmp_path):
     scene = stage(size=(160, 120))
     scene.render.resolution_percentage = 50
     assert rendered(tmp_path)["Combined"]["R"].shape == (60, 80)
 
 
-def test_frames_differ(extension, tmp_path):
+def test_frames_differ(tmp_path):
     scene = stage()
     one = bpy.data.objects["Suzanne"]
     for frame, turn in ((1, 0.0), (10, 2.0)):
@@ -167,7 +170,7 @@ def test_frames_differ(extension, tmp_path):
         (lambda _: scenes.cube().__setitem__("voxrt_rule", "all"), "voxrt_rule: invalid enum value 'all'"),
     ],
 )
-def test_what_cannot_be_rendered_is_one_line(extension, change, problem):
+def test_what_cannot_be_rendered_is_one_line(change, problem):
     scene = stage()
     change(scene)
     with pytest.raises(RuntimeError) as caught:

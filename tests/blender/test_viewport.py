@@ -8,14 +8,17 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="Blender's module bpy is not here: make blender-test")
 
 import blender_scenes as scenes  # noqa: E402
+
 import voxrt  # noqa: E402
 from voxrt.views.viewpoint import authored_camera  # noqa: E402
 
 SIZE = (96, 64)
 
+pytestmark = pytest.mark.usefixtures("extension")
+
 
 @pytest.fixture
-def looking(extension):
+def looking():
     """A viewport that looks through a camera."""
     from voxrt_extension.viewport import Looking
 

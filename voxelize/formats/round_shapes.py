@@ -31,7 +31,7 @@ def _ring(radius: float, height: float) -> NDArray[np.float64]:
 
 def _half_ball(radius: float, height: float, side: float) -> NDArray[np.float64]:
     """Return points on the upper (`side` 1) or lower (-1) half ball of a capsule."""
-    rings = []
-    for angle in np.arange(_FROM_POLE + 1) * (np.pi / 2 / _FROM_POLE):
-        rings.append(_ring(radius * np.cos(angle), side * (height / 2 + radius * np.sin(angle))))
-    return np.concatenate(rings)
+    angles = np.arange(_FROM_POLE + 1) * (np.pi / 2 / _FROM_POLE)
+    return np.concatenate(
+        [_ring(radius * np.cos(angle), side * (height / 2 + radius * np.sin(angle))) for angle in angles]
+    )

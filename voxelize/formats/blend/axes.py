@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 _TO_SCENE = np.array([[1.0, 0, 0, 0], [0, 0, 1.0, 0], [0, -1.0, 0, 0], [0, 0, 0, 1.0]])
 _TO_BLENDER = _TO_SCENE.T
@@ -18,11 +20,13 @@ def turned_points(points: NDArray[np.float32]) -> NDArray[np.float32]:
     return turned
 
 
-def placed(matrix: Any) -> NDArray[np.float64]:  # noqa: ANN401 - of mathutils
+def placed(matrix: Any) -> NDArray[np.float64]:
     """Return the transform of an object whose points are turned: float64, shape (4, 4)."""
-    return _TO_SCENE @ np.array(matrix, np.float64) @ _TO_BLENDER
+    turned: NDArray[np.float64] = _TO_SCENE @ np.array(matrix, np.float64) @ _TO_BLENDER
+    return turned
 
 
-def placed_camera(matrix: Any) -> NDArray[np.float64]:  # noqa: ANN401
+def placed_camera(matrix: Any) -> NDArray[np.float64]:
     """Return the transform of a camera or a light, whose own frame stays: float64, shape (4, 4)."""
-    return _TO_SCENE @ np.array(matrix, np.float64)
+    turned: NDArray[np.float64] = _TO_SCENE @ np.array(matrix, np.float64)
+    return turned

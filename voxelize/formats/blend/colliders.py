@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.warning_log import WarningLog
 
 
-def rigid_collider(body: Any, arrays: MeshArrays, log: WarningLog) -> Collider | None:  # noqa: ANN401
+def rigid_collider(body: Any, arrays: MeshArrays, log: WarningLog) -> Collider | None:  # noqa: PLR0911 - one each
     """Return the collider of a rigid body (bpy.types.RigidBodyObject) with these triangles; None for none."""
     points = arrays.positions[np.unique(arrays.triangles)].astype(np.float64)
     half = (points.max(axis=0) - points.min(axis=0)) / 2

@@ -23,7 +23,9 @@ _MAGIC = (b"BLENDER", b"\x28\xb5\x2f\xfd", b"\x1f\x8b")  # plain, or compressed 
 _OLD = re.compile(rb"BLENDER([_-])([vV])(\d)(\d\d)")
 
 
-def read_file(path: Path, allowance: Allowance, *, time: float | None, allow_outside: bool, opaque_from: float) -> Scene:
+def read_file(
+    path: Path, allowance: Allowance, *, time: float | None, allow_outside: bool, opaque_from: float
+) -> Scene:
     """Read what a render of a file shows; :func:`~voxrt.voxelize.formats.blend.isolated.read_isolated` says how."""
     allowance.add(path.stat().st_size)
     _open(path)
@@ -40,10 +42,8 @@ def read_file(path: Path, allowance: Allowance, *, time: float | None, allow_out
         frame = scene.frame_start + time * scene.render.fps / scene.render.fps_base
         scene.frame_set(int(frame // 1), subframe=frame % 1)
 
-    def read(depsgraph: Any) -> Scene:  # noqa: ANN401 - bpy.types.Depsgraph
-        return read_depsgraph(
-            depsgraph, bpy.data.materials, asset_name(path), path=path, opaque_from=opaque_from
-        )
+    def read(depsgraph: Any) -> Scene:
+        return read_depsgraph(depsgraph, bpy.data.materials, asset_name(path), path=path, opaque_from=opaque_from)
 
     found = as_rendered(scene, bpy.context.view_layer, read)
     return replace(found, warnings=(*log.warnings(), *found.warnings))
@@ -69,7 +69,7 @@ def _open(path: Path) -> None:
         raise AssetError(path, "Blender did not open it", fix="it is damaged: repair it or save it again")
 
 
-def _check_library(path: Path, library: Any, files: ExternalFiles, allowance: Allowance) -> None:  # noqa: ANN401
+def _check_library(path: Path, library: Any, files: ExternalFiles, allowance: Allowance) -> None:
     """Refuse a library that stands outside the file's folder, or is missing; allow what reading it takes."""
     name = bpy.path.abspath(library.filepath)
     if files.is_outside(name):
@@ -81,7 +81,7 @@ def _check_library(path: Path, library: Any, files: ExternalFiles, allowance: Al
     allowance.add(found.stat().st_size)
 
 
-def _check_image(image: Any, files: ExternalFiles, allowance: Allowance, log: WarningLog) -> None:  # noqa: ANN401
+def _check_image(image: Any, files: ExternalFiles, allowance: Allowance, log: WarningLog) -> None:
     """Forget an image that stands outside the file's folder; allow what reading another takes."""
     if image.source not in ("FILE", "SEQUENCE", "TILED") or image.packed_file is not None or not image.filepath:
         return

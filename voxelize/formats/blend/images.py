@@ -61,13 +61,13 @@ class Images:
             opacity = None
         return np.dstack([pixels[:, :, :3], np.full(pixels.shape[:2], 255, np.uint8) if opacity is None else opacity])
 
-    def _read(self, image: Any) -> NDArray[np.uint8] | None:  # noqa: ANN401 - bpy.types.Image
+    def _read(self, image: Any) -> NDArray[np.uint8] | None:
         name = str(image.name_full)
         if name not in self._pixels:
             self._pixels[name] = self._decoded(image, name)
         return self._pixels[name]
 
-    def _decoded(self, image: Any, name: str) -> NDArray[np.uint8] | None:  # noqa: ANN401 - bpy.types.Image
+    def _decoded(self, image: Any, name: str) -> NDArray[np.uint8] | None:
         if image.source == "TILED":
             self._log.add("texture", f"image {name!r} has several tiles and was not read{INSTEAD}")
             return None
@@ -83,10 +83,10 @@ class Images:
         return _as_rgba(image, values.reshape(height, width, image.channels)[::-1])
 
 
-def _as_rgba(image: Any, values: NDArray[np.float32]) -> NDArray[np.uint8]:  # noqa: ANN401 - bpy.types.Image
+def _as_rgba(image: Any, values: NDArray[np.float32]) -> NDArray[np.uint8]:
     """Return sRGB colour and linear alpha of an image's numbers, whose rows go down."""
     channels = values.shape[2]
-    colour = values[:, :, :3] if channels >= 3 else np.repeat(values[:, :, :1], 3, axis=2)
+    colour: NDArray[np.floating] = values[:, :, :3] if channels >= 3 else np.repeat(values[:, :, :1], 3, axis=2)
     alpha = values[:, :, 3] if channels == 4 else np.ones(values.shape[:2], np.float32)
     if image.is_float and image.alpha_mode == "PREMUL":
         colour = colour / np.where(alpha > 0, alpha, 1)[:, :, None]
@@ -98,9 +98,11 @@ def _as_rgba(image: Any, values: NDArray[np.float32]) -> NDArray[np.uint8]:  # n
     return np.dstack([coded, _bytes(alpha)])
 
 
-def _bytes(values: NDArray[np.float32]) -> NDArray[np.uint8]:
-    return np.rint(np.clip(np.nan_to_num(values, nan=0.0), 0, 1) * 255).astype(np.uint8)
+def _bytes(values: NDArray[np.floating]) -> NDArray[np.uint8]:
+    coded: NDArray[np.uint8] = np.rint(np.clip(np.nan_to_num(values, nan=0.0), 0, 1) * 255).astype(np.uint8)
+    return coded
 
 
 def _luminance(pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    return np.rint(pixels[:, :, :3] @ np.array(_LUMINANCE)).astype(np.uint8)
+    mixed: NDArray[np.float64] = pixels[:, :, :3] @ np.array(_LUMINANCE)
+    return np.rint(mixed).astype(np.uint8)

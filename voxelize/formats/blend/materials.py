@@ -36,7 +36,7 @@ class Materials:
     """The materials of one scene, each read once."""
 
     def __init__(
-        self, named: Any, log: WarningLog, error: Callable[[str, str, str], AssetError], opaque_from: float  # noqa: ANN401
+        self, named: Any, log: WarningLog, error: Callable[[str, str, str], AssetError], opaque_from: float
     ) -> None:
         self._named = named  # the file's materials
         self._log = log
@@ -44,7 +44,7 @@ class Materials:
         self._opaque_from = opaque_from
         self._read: dict[tuple[str, bool], SurfaceMaterial] = {}
 
-    def of(self, material: Any, *, mirrored: bool = False) -> SurfaceMaterial:  # noqa: ANN401 - bpy.types.Material
+    def of(self, material: Any, *, mirrored: bool = False) -> SurfaceMaterial:
         """Return what a material of a face says; None for a face without one. `mirrored` makes it a mirror."""
         if material is None:
             return SurfaceMaterial(("default", mirrored), "default", mirror=mirrored, authored=False)
@@ -53,7 +53,7 @@ class Materials:
             self._read[key] = self._surface(material, mirrored=mirrored)
         return self._read[key]
 
-    def called(self, name: str, place: str) -> Any:  # noqa: ANN401 - bpy.types.Material
+    def called(self, name: str, place: str) -> Any:
         """Return the material that an object's `voxrt_material` names; AssetError where there is none."""
         for one in self._named:
             if name in (one.name, one.get(f"{PREFIX}material")):
@@ -61,7 +61,7 @@ class Materials:
         known = ", ".join(repr(one.name) for one in self._named[:8]) or "no materials"
         raise self._error(place, f"no material {name!r} in the file", f"it has {known}")
 
-    def _surface(self, material: Any, *, mirrored: bool) -> SurfaceMaterial:  # noqa: ANN401 - bpy.types.Material
+    def _surface(self, material: Any, *, mirrored: bool) -> SurfaceMaterial:
         place = f"material {material.name!r}"
         authored = checked_properties(
             {key: material[key] for key in material.keys() if key.startswith(PREFIX)},  # noqa: SIM118 - not a dict
@@ -87,7 +87,7 @@ class Materials:
             key, name, (red, green, blue, opacity), colour.image, image, alpha.channel, colour.attribute, cutoff, mirror
         )
 
-    def _shown(self, material: Any) -> tuple[Product, Product, float | None]:  # noqa: ANN401 - bpy.types.Material
+    def _shown(self, material: Any) -> tuple[Product, Product, float | None]:
         """Return the colour and the alpha of a material, and the alpha from which on it is solid, or None."""
         red, green, blue, alpha = material.diffuse_color
         plain = Product((red, green, blue)), Product((alpha, alpha, alpha)), None
@@ -131,11 +131,11 @@ def _surface_node(socket: Socket) -> tuple[Any, Groups, tuple[Socket, Groups] | 
     return (node, groups, None) if _has_colour(node) else None
 
 
-def _has_colour(node: Any) -> bool:  # noqa: ANN401 - a node
+def _has_colour(node: Any) -> bool:
     return hasattr(node, "inputs") and any(name in node.inputs for name in ("Base Color", "Color"))
 
 
-def _colour(node: Any, groups: Groups) -> Product | None:  # noqa: ANN401 - a node
+def _colour(node: Any, groups: Groups) -> Product | None:
     """Return the colour that a shader reflects; what it emits where it reflects nothing, as in glTF."""
     if node.type == "EMISSION":
         return _emitted(node.inputs["Color"], node.inputs["Strength"], groups)

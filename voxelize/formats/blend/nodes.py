@@ -7,10 +7,12 @@ node tree computes depends on the point, the view or a seed, and has no meaning 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 Socket: TypeAlias = Any  # bpy.types.NodeSocket
 Groups: TypeAlias = tuple[Any, ...]  # the group nodes around a node, the innermost last
@@ -52,7 +54,9 @@ def source(socket: Socket, groups: Groups = ()) -> tuple[Any, Any, Groups] | Non
         if node.type == "REROUTE":
             socket = node.inputs[0]
         elif node.type == "GROUP" and node.node_tree is not None:
-            inner = next((one for one in node.node_tree.nodes if one.type == "GROUP_OUTPUT" and one.is_active_output), None)
+            inner = next(
+                (one for one in node.node_tree.nodes if one.type == "GROUP_OUTPUT" and one.is_active_output), None
+            )
             found = inner and next((one for one in inner.inputs if one.identifier == output.identifier), None)
             if found is None:
                 return node, output, groups
@@ -82,7 +86,7 @@ class _Value:
         self.socket = socket
 
 
-def product(socket: Socket, groups: Groups = ()) -> Product | None:
+def product(socket: Socket, groups: Groups = ()) -> Product | None:  # noqa: PLR0911 - one per kind of node
     """Return the product that a colour socket shows; None where its nodes compute something else."""
     found = source(socket, groups)
     if found is None:
@@ -95,7 +99,8 @@ def product(socket: Socket, groups: Groups = ()) -> Product | None:
             return Product(_rgb(output.default_value))
         case "TEX_IMAGE":
             image = _image(node, groups)
-            return image and Product(image=image, channel="alpha" if output.name == "Alpha" else "colour")
+            channel = "alpha" if output.name == "Alpha" else "colour"
+            return None if image is None else Product(image=image, channel=channel)
         case "VERTEX_COLOR":
             return Product(attribute=node.layer_name, channel="alpha" if output.name == "Alpha" else "colour")
         case "ATTRIBUTE" if node.attribute_type == "GEOMETRY" and output.name in ("Color", "Alpha"):
@@ -108,7 +113,7 @@ def product(socket: Socket, groups: Groups = ()) -> Product | None:
             return None
 
 
-def _multiplied(node: Any, groups: Groups) -> Product | None:  # noqa: ANN401 - a node
+def _multiplied(node: Any, groups: Groups) -> Product | None:
     inputs = [one for one in node.inputs if one.enabled]
     if len(inputs) != 3 or node.blend_type != "MULTIPLY" or getattr(node, "data_type", "RGBA") != "RGBA":
         return None
@@ -137,14 +142,14 @@ def _times(one: Product | None, other: Product | None) -> Product | None:
     )
 
 
-def _rgb(value: Any) -> tuple[float, float, float]:  # noqa: ANN401 - of mathutils
+def _rgb(value: Any) -> tuple[float, float, float]:
     if isinstance(value, float | int):
         return float(value), float(value), float(value)
     red, green, blue, *_ = value
     return float(red), float(green), float(blue)
 
 
-def _image(node: Any, groups: Groups) -> ImageUse | None:  # noqa: ANN401 - a node
+def _image(node: Any, groups: Groups) -> ImageUse | None:
     if node.image is None or node.projection != "FLAT":
         return None
     placement = _coordinates(node.inputs["Vector"], groups)
@@ -175,7 +180,7 @@ def _coordinates(socket: Socket, groups: Groups) -> tuple[str, NDArray[np.float6
             return None
 
 
-def _moved(node: Any, groups: Groups) -> tuple[str, NDArray[np.float64]] | None:  # noqa: ANN401 - a node
+def _moved(node: Any, groups: Groups) -> tuple[str, NDArray[np.float64]] | None:
     inner = _coordinates(node.inputs["Vector"], groups)
     parts = [node.inputs[name] for name in ("Location", "Rotation", "Scale") if name in node.inputs]
     if inner is None or len(parts) != 3 or any(source(one, groups) is not None for one in parts):
@@ -212,4 +217,3 @@ def threshold(socket: Socket, groups: Groups = ()) -> tuple[Product | None, floa
                 if source(limit, inner[2]) is None:
                     return product(value, inner[2]), limit.default_value
     return product(socket, groups), None
-

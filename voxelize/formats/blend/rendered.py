@@ -26,7 +26,7 @@ _SETTINGS = {
 }
 
 
-def as_rendered(scene: Any, view_layer: Any, read: Callable[[Any], T]) -> T:  # noqa: ANN401 - of bpy
+def as_rendered(scene: Any, view_layer: Any, read: Callable[[Any], T]) -> T:
     """Return what `read` makes of the dependency graph of a render of a scene's view layer.
 
     The scene needs no camera. Its settings are the same afterwards. Raise what `read` raises.
@@ -34,7 +34,7 @@ def as_rendered(scene: Any, view_layer: Any, read: Callable[[Any], T]) -> T:  # 
     found: list[T] = []
     raised: list[BaseException] = []
 
-    def take(depsgraph: Any) -> None:  # noqa: ANN401 - bpy.types.Depsgraph
+    def take(depsgraph: Any) -> None:
         if found or raised:
             return
         try:
@@ -60,7 +60,7 @@ def as_rendered(scene: Any, view_layer: Any, read: Callable[[Any], T]) -> T:  # 
 
 
 @contextmanager
-def _set_up(scene: Any, view_layer: Any) -> Iterator[None]:  # noqa: ANN401 - of bpy
+def _set_up(scene: Any, view_layer: Any) -> Iterator[None]:
     """Let a scene be rendered for the time of a block: without what comes after the render, and with a camera."""
     render, before, used, camera = scene.render, {}, view_layer.use, None
     for name, value in _SETTINGS.items():

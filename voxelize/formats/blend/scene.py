@@ -43,7 +43,7 @@ _WITHOUT_VOXELS = {
 
 
 def read_depsgraph(
-    depsgraph: Any, named: Any, name: str, *, path: object = "", opaque_from: float = OPAQUE_FROM  # noqa: ANN401
+    depsgraph: Any, named: Any, name: str, *, path: object = "", opaque_from: float = OPAQUE_FROM
 ) -> Scene:
     """Read what an evaluated dependency graph shows: objects as their modifiers and node groups make them.
 
@@ -99,7 +99,7 @@ class _Instance:
 class SceneReader:
     """Reads a scene, and single objects of it again. Arguments are those of :func:`read_depsgraph`."""
 
-    def __init__(self, named: Any, path: object, opaque_from: float = OPAQUE_FROM) -> None:  # noqa: ANN401 - of bpy
+    def __init__(self, named: Any, path: object, opaque_from: float = OPAQUE_FROM) -> None:
         self._path = path
         self._opaque_from = opaque_from
         self._log = WarningLog()
@@ -111,7 +111,7 @@ class SceneReader:
         self._rows: dict[tuple[object, ...], int] = {}
         self._loaded: list[LoadedMesh] = []
 
-    def scene(self, depsgraph: Any, name: str) -> Scene:  # noqa: ANN401 - bpy.types.Depsgraph
+    def scene(self, depsgraph: Any, name: str) -> Scene:
         """Read a whole scene, as :func:`read_depsgraph` does; once."""
         things = [one for instance in depsgraph.object_instances if (one := self._placed(instance)) is not None]
         cameras = self._cameras(depsgraph)
@@ -137,7 +137,7 @@ class SceneReader:
         viewpoint = cameras[0] if cameras else None
         return Scene(name, tuple(objects), materials, self._log.warnings(), viewpoint=viewpoint, cameras=cameras)
 
-    def again(self, one: Any) -> tuple[SceneObject, tuple[Material, ...]] | None:  # noqa: ANN401 - bpy.types.Object
+    def again(self, one: Any) -> tuple[SceneObject, tuple[Material, ...]] | None:
         """Read an evaluated object that was edited, and all materials so far.
 
         None where it cannot be read by itself: it shows textures or colour attributes, or nothing.
@@ -168,7 +168,7 @@ class SceneReader:
     def _error(self, place: str, problem: str, fix: str) -> AssetError:
         return AssetError(self._path, problem, place=place, fix=fix)
 
-    def _placed(self, instance: Any) -> _Placed | None:  # noqa: ANN401 - bpy.types.DepsgraphObjectInstance
+    def _placed(self, instance: Any) -> _Placed | None:
         one = instance.object
         if one.type != "MESH":
             if one.type in _WITHOUT_VOXELS:
@@ -205,7 +205,7 @@ class SceneReader:
             collider = self._colliders[shape]
         return _Placed(name, row, transform, properties, collider)
 
-    def _mesh(self, one: Any, key: int, arrays: MeshArrays, properties: ObjectProperties) -> int:  # noqa: ANN401
+    def _mesh(self, one: Any, key: int, arrays: MeshArrays, properties: ObjectProperties) -> int:
         """Return the row of an object's mesh with the materials of its slots."""
         slots = [slot.material for slot in one.material_slots]
         mirrored = bool(properties.voxrt_reflect)
@@ -215,14 +215,18 @@ class SceneReader:
         shared = key, mirrored, *(slot and slot.name_full for slot in slots)
         if shared not in self._rows:
             spans = [
-                (self._materials.of(slots[min(slot, len(slots) - 1)] if slots else None, mirrored=mirrored), *rows)
-                for slot, *rows in arrays.spans()
+                (
+                    self._materials.of(slots[min(slot, len(slots) - 1)] if slots else None, mirrored=mirrored),
+                    start,
+                    stop,
+                )
+                for slot, start, stop in arrays.spans()
             ]
             self._rows[shared] = len(self._loaded)
             self._loaded.append(self._painted(one.data, arrays, spans))
         return self._rows[shared]
 
-    def _painted(self, mesh: Any, arrays: MeshArrays, spans: list[tuple[SurfaceMaterial, int, int]]) -> LoadedMesh:  # noqa: ANN401
+    def _painted(self, mesh: Any, arrays: MeshArrays, spans: list[tuple[SurfaceMaterial, int, int]]) -> LoadedMesh:
         count = len(arrays.triangles)
         materials = np.zeros(count, np.uint8)
         entries: list[Appearance] = []
@@ -273,7 +277,7 @@ class SceneReader:
         return found
 
     def _texture(
-        self, mesh: Any, arrays: MeshArrays, material: SurfaceMaterial, part: slice  # noqa: ANN401 - bpy.types.Mesh
+        self, mesh: Any, arrays: MeshArrays, material: SurfaceMaterial, part: slice
     ) -> tuple[Any, NDArray[np.float64] | None]:
         """Return a material's texture and its coordinates at some triangles, v downwards; None and None for none."""
         use = material.image or material.opacity
@@ -292,7 +296,7 @@ class SceneReader:
         flipped[..., 1] = 1.0 - flipped[..., 1]
         return texture, flipped
 
-    def _cameras(self, depsgraph: Any) -> tuple[Viewpoint, ...]:  # noqa: ANN401 - bpy.types.Depsgraph
+    def _cameras(self, depsgraph: Any) -> tuple[Viewpoint, ...]:
         """Return the perspective cameras, the scene's own first."""
         own = depsgraph.scene.camera
         found: list[Viewpoint] = []

@@ -31,7 +31,7 @@ class Daylight:
         return None if self.sky is None else "#{:02x}{:02x}{:02x}".format(*self.sky)
 
 
-def read_viewpoint(depsgraph: Any, camera: Any, log: WarningLog) -> Viewpoint | None:  # noqa: ANN401 - of bpy
+def read_viewpoint(depsgraph: Any, camera: Any, log: WarningLog) -> Viewpoint | None:
     """Return the viewpoint of an evaluated camera object; None, with a warning, where it makes no picture."""
     lens = camera.data
     if lens.type != "PERSP":
@@ -54,7 +54,7 @@ def read_viewpoint(depsgraph: Any, camera: Any, log: WarningLog) -> Viewpoint | 
     return viewpoint
 
 
-def projected_viewpoint(name: str, place: Any, projection: Any, size: tuple[float, float]) -> Viewpoint | None:  # noqa: ANN401
+def projected_viewpoint(name: str, place: Any, projection: Any, size: tuple[float, float]) -> Viewpoint | None:
     """Return the viewpoint of a projection matrix, for pictures of so wide and so high; None where it makes none.
 
     `place` takes the frame in which one looks along -z to Blender's.
@@ -68,7 +68,7 @@ def projected_viewpoint(name: str, place: Any, projection: Any, size: tuple[floa
     return camera_viewpoint(name, placed_camera(place), angle, shift)
 
 
-def read_daylight(depsgraph: Any) -> Daylight:  # noqa: ANN401 - bpy.types.Depsgraph
+def read_daylight(depsgraph: Any) -> Daylight:
     """Return the sun and the sky of an evaluated scene."""
     sun = None
     for instance in depsgraph.object_instances:
@@ -80,10 +80,10 @@ def read_daylight(depsgraph: Any) -> Daylight:  # noqa: ANN401 - bpy.types.Depsg
     return Daylight(sun, _sky(depsgraph.scene.world))
 
 
-def _sky(world: Any) -> tuple[int, int, int] | None:  # noqa: ANN401 - bpy.types.World
+def _sky(world: Any) -> tuple[int, int, int] | None:
     if world is None:
         return None
-    linear: tuple[float, ...] | None = tuple(world.color)
+    linear: tuple[float, ...] = tuple(world.color)
     if world.node_tree is not None:
         output = world.node_tree.get_output_node("ALL")
         found = None if output is None else source(output.inputs["Surface"])

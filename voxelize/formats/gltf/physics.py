@@ -19,8 +19,6 @@ from voxrt.voxelize.formats.round_shapes import capsule_points, cylinder_points
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
     from voxrt.voxelize.collider_shapes import Collider
     from voxrt.voxelize.formats.gltf.document import Document
     from voxrt.voxelize.formats.gltf.meshes import Surface

@@ -5,8 +5,8 @@ process that reads it has a small allowance at first. Each file that it opens ad
 that large scenes are read and small files cannot take the machine.
 
 Memory is limited by ``RLIMIT_DATA``: what a process writes to, heap and stacks. ``RLIMIT_AS`` would count address
-space as well, of which large libraries reserve gigabytes for their threads and map whole files. Time is limited twice: as
-time of the processor, which does not depend on what else the machine does, and as time of day, for a process that
+space as well, of which large libraries reserve gigabytes for their threads and map whole files. Time is limited twice:
+as time of the processor, which does not depend on what else the machine does, and as time of day, for a process that
 waits for ever.
 """
 
