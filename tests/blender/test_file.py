@@ -212,8 +212,8 @@ def test_without_blender_one_line_says_how_to_get_it(cube_file, monkeypatch):
     monkeypatch.setattr(isolated, "find_spec", lambda _: None)
     monkeypatch.setenv("PATH", "")
     assert refusal(cube_file) == (
-        "Blender, which reads it, is not here; pip install 'voxrt-build[blender]', install Blender, or export the "
-        "scene as glTF from Blender"
+        "Blender, which reads it, is not here; "
+        "pip install bpy, install Blender, or export the scene as glTF from Blender"
     )
 
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.scene import Scene
 
 _CHILD = "voxrt.voxelize.formats.blend.child"
-_INSTALL = "pip install 'voxrt-build[blender]', install Blender, or export the scene as glTF from Blender"
+_INSTALL = "pip install bpy, install Blender, or export the scene as glTF from Blender"
 _BPY_MEMORY = 1 << 30  # bytes that Blender itself takes
 _VERSION = "voxrt-python={}.{}"
 
