@@ -106,6 +106,13 @@ def test_libraries_outside_are_refused(cube_file, tmp_path):
     assert len(voxrt.load(path, allow_outside=True).objects) == 1
 
 
+def test_the_brushes_of_blender_are_no_library_outside():
+    """Files in which somebody has painted link them; this one comes with Blender."""
+    folder = Path(bpy.utils.system_resource("SCRIPTS")) / "startup/bl_app_templates_system/2D_Animation"
+    path = folder / "startup.blend"
+    assert refusal(path) == "has no triangles to voxelize; check that renders show a mesh"
+
+
 def test_missing_libraries_are_refused(cube_file):
     path = linked(cube_file.parent, cube_file)
     cube_file.unlink()
@@ -206,6 +213,41 @@ def test_time_is_limited(tmp_path):
         voxrt.AssetError, match=r"heavy\.blend: (takes more than 1 seconds|needs more memory|Blender cr)"
     ):
         isolated.read_isolated(path, limits=least)
+
+
+LAUNCHER = """#!{python} -P
+# The module bpy with the few options of the program that voxrt gives it.
+import sys
+print("Blender 5.3.0")  # as the program does while it starts
+import bpy
+options = sys.argv[1:]
+assert options[:5] == ["--background", "--factory-startup", "--disable-autoexec", "--python-exit-code", "1"]
+assert options[5] == "--python-expr"
+exec(options[6])
+"""
+
+
+@pytest.fixture
+def program(tmp_path, monkeypatch):
+    """A program `blender` on the path, which is the module bpy; voxrt itself has no such module."""
+    file = tmp_path / "bin" / "blender"
+    file.parent.mkdir()
+    file.write_text(LAUNCHER.format(python=sys.executable))
+    file.chmod(0o755)
+    monkeypatch.setenv("PATH", str(file.parent))
+    monkeypatch.setattr(isolated, "find_spec", lambda _: None)
+    return file
+
+
+@pytest.mark.usefixtures("program")
+def test_the_program_reads_a_file_too(cube_file):
+    assert [one.name for one in voxrt.load(cube_file).objects] == ["cube"]
+
+
+def test_a_program_of_another_python_is_one_line(cube_file, program, monkeypatch):
+    monkeypatch.setattr(isolated, "_PYTHON", "3.99")
+    shown = f"{sys.version_info[0]}.{sys.version_info[1]}"
+    assert refusal(cube_file).startswith(f"{program} has Python {shown}, and this voxrt is for 3.99; pip install bpy")
 
 
 def test_without_blender_one_line_says_how_to_get_it(cube_file, monkeypatch):

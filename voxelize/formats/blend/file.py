@@ -72,6 +72,8 @@ def _open(path: Path) -> None:
 def _check_library(path: Path, library: Any, files: ExternalFiles, allowance: Allowance) -> None:
     """Refuse a library that stands outside the file's folder, or is missing; allow what reading it takes."""
     name = bpy.path.abspath(library.filepath)
+    if Path(name).is_relative_to(bpy.utils.system_resource("DATAFILES")):  # brushes that come with Blender
+        return
     if files.is_outside(name):
         raise AssetError(path, f"library {library.filepath!r} is outside the file's folder", fix=ALLOW_OUTSIDE)
     found = files.find(name)

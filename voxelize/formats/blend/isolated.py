@@ -26,7 +26,9 @@ if TYPE_CHECKING:
 _CHILD = "voxrt.voxelize.formats.blend.child"
 _INSTALL = "pip install bpy, install Blender, or export the scene as glTF from Blender"
 _BPY_MEMORY = 1 << 30  # bytes that Blender itself takes
-_VERSION = "voxrt-python={}.{}"
+_OUTPUT = 9  # the descriptor of the message of the program's child
+_PYTHON = f"{sys.version_info[0]}.{sys.version_info[1]}"
+_SHOWN = "voxrt-python="
 
 
 def read_isolated(
@@ -70,8 +72,10 @@ def read_isolated(
     if limits is None:
         own = Limits.of_this_machine()
         limits = replace(own, memory=min(own.memory + _BPY_MEMORY, own.most_memory))
+    command, output = _command(path)
     request = Request(
         parent=os.getpid(),
+        output=output,
         time=time,
         allow_outside=allow_outside,
         opaque_from=opaque_from,
@@ -81,7 +85,7 @@ def read_isolated(
     )
     reader = Reader(
         "Blender",
-        _command(path),
+        command,
         too_slow="repair it, or apply its modifiers in Blender",
         # The user's preferences, add-ons and startup file are not those of the file.
         folders=("TMPDIR", "BLENDER_USER_RESOURCES", "HOME"),
@@ -89,29 +93,28 @@ def read_isolated(
     return read_apart(reader, path, request, limits)
 
 
-def _command(path: Path) -> tuple[str, ...]:
-    """Return the program that runs the child; AssetError where there is no Blender."""
+def _command(path: Path) -> tuple[tuple[str, ...], int]:
+    """Return the program that runs the child, and where that writes its message; AssetError without Blender."""
     if find_spec("bpy") is not None:
         # -P: the folder that the user works in may hold a hostile numpy.py.
-        return sys.executable, "-P", "-m", _CHILD
+        return (sys.executable, "-P", "-m", _CHILD), 1
     program = shutil.which("blender")
     if program is None:
         raise AssetError(path, "Blender, which reads it, is not here", fix=_INSTALL)
-    return _program_command(path, program)
+    return _program_command(path, program), _OUTPUT
 
 
 def _program_command(path: Path, program: str) -> tuple[str, ...]:
     """Return how the program ``blender`` runs the child; AssetError where its Python cannot import voxrt."""
     quiet = (program, "--background", "--factory-startup", "--disable-autoexec", "--python-exit-code", "1")
-    wanted = _VERSION.format(*sys.version_info)
-    show = f"import sys; print({_VERSION!r}.format(*sys.version_info))"
-    shown = subprocess.run([*quiet, "--python-expr", show], capture_output=True, text=True, check=False)  # noqa: S603
-    if wanted not in shown.stdout.split():
-        found = next((one.partition("=")[2] for one in shown.stdout.split() if one.startswith("voxrt-python=")), "none")
-        problem = f"{program} has Python {found}, and this voxrt is for {sys.version_info[0]}.{sys.version_info[1]}"
-        raise AssetError(path, problem, fix=_INSTALL)
+    show = f"import sys; print('{_SHOWN}%d.%d' % sys.version_info[:2])"
+    ran = subprocess.run([*quiet, "--python-expr", show], capture_output=True, text=True, check=False)  # noqa: S603
+    found = next((one.removeprefix(_SHOWN) for one in ran.stdout.split() if one.startswith(_SHOWN)), "none")
+    if found != _PYTHON:
+        raise AssetError(path, f"{program} has Python {found}, and this voxrt is for {_PYTHON}", fix=_INSTALL)
     import voxrt  # noqa: PLC0415 - its place alone is of interest
 
     paths = [str(Path(voxrt.__file__).resolve().parent.parent), *(one for one in sys.path if "site-packages" in one)]
     run = f"import runpy, sys; sys.path.extend({paths!r}); runpy.run_module({_CHILD!r}, run_name='__main__')"
-    return *quiet, "--python-expr", run, "--"
+    # The program prints while it starts.
+    return "/bin/sh", "-c", f'exec "$@" {_OUTPUT}>&1 1>&2', "sh", *quiet, "--python-expr", run, "--"

@@ -49,7 +49,7 @@ def serve_reader(kind: type[R], read: Callable[[Path, R, Allowance], Scene]) -> 
     path, request = Path(sys.argv[-2]), msgspec.json.decode(sys.argv[-1], type=kind)
     _end_with(request.parent)
     os.chdir(path.parent)  # libraries look here for files whose names begin without a dot
-    output = os.dup(1)
+    output = os.dup(request.output)
     os.dup2(2, 1)  # what libraries print is no part of the message
     for part in _reply(path, request, read):
         _write(output, part)

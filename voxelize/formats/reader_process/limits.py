@@ -47,6 +47,7 @@ class Request(msgspec.Struct, frozen=True, kw_only=True):
     """What any reader is asked: its limits, its caller's process id, and the options that all of them have."""
 
     parent: int
+    output: int = 1  # the descriptor to which the reader writes its message
     time: float | None
     allow_outside: bool
     opaque_from: float
