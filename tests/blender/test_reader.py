@@ -121,6 +121,24 @@ def test_rigid_bodies_are_colliders(shape):
     assert built.solid_voxels * built.rom.grid.voxel_size**3 == pytest.approx(volume, rel=0.03)
 
 
+def test_rigid_bodies_that_are_not_shown_are_hidden_colliders():
+    scenes.empty_file()
+    scenes.monkey()
+    proxy = scenes.cube((0, 0, 1), scenes.paint("red", (0.8, 0, 0)), name="proxy")
+    bpy.ops.rigidbody.object_add()
+    proxy.rigid_body.collision_shape = "BOX"
+    proxy.hide_render = True
+    scene = read()
+    assert [(one.name, one.hidden, len(one.colliders)) for one in scene.objects] == [
+        ("Suzanne", False, 0),
+        ("proxy", True, 1),
+    ]
+    assert scene.materials[scene.objects[1].collider_material].name == "red"
+    assert [one.name for one in voxrt.build(scene, depth=5).objects if one.voxels] == ["Suzanne"]
+    built = voxrt.build(scene, depth=5, geometry="collider")
+    assert {one.name: one.source for one in built.objects}["proxy"] == "box"
+
+
 def test_box_colliders_are_rounded_to_powers_of_two():
     scenes.empty_file()
     one = scenes.cube(scale=(1.75, 0.9, 1.0))

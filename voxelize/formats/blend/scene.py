@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -128,6 +128,7 @@ class SceneReader:
                 called = f"{called} [{numbers[called]}]"
                 numbers[one.name] += 1
             objects.append(self._object(called, one, mesh))
+        objects += self._hidden(depsgraph)
         if not objects:
             raise AssetError(self._path, "has no triangles to voxelize", fix="check that renders show a mesh")
         materials = self._table.materials()
@@ -136,6 +137,27 @@ class SceneReader:
             materials = (Material(materials[0].name, sky), *materials[1:])
         viewpoint = cameras[0] if cameras else None
         return Scene(name, tuple(objects), materials, self._log.warnings(), viewpoint=viewpoint, cameras=cameras)
+
+    def _hidden(self, depsgraph: Any) -> list[SceneObject]:
+        """Return the rigid bodies that renders do not show, as colliders without a mesh; modifiers do not count."""
+        found: list[SceneObject] = []
+        if depsgraph.mode != "RENDER":
+            return found
+        for one in depsgraph.view_layer.objects:
+            if one.type != "MESH" or one.rigid_body is None or not one.hide_render or not len(one.data.polygons):
+                continue
+            collider = rigid_collider(one.rigid_body, read_triangles(one.data), self._log)
+            if collider is not None:
+                material = self._materials.of(one.active_material)
+                number = self._uniform(replace(material, cutoff=0.0), 1)
+                transform = placed(one.matrix_world)
+                found.append(
+                    SceneObject(
+                        one.name, transform=transform, colliders=(collider,), collider_material=number, hidden=True
+                    )
+                )
+        self._log.add("collider", "colliders that are not shown count with geometry collider alone", len(found))
+        return found
 
     def again(self, one: Any) -> tuple[SceneObject, tuple[Material, ...]] | None:
         """Read an evaluated object that was edited, and all materials so far.
