@@ -46,6 +46,22 @@ def test_a_file_is_what_its_scene_is(cube_file):
     assert scene.warnings == ()
 
 
+def test_a_camera_and_a_sky_come_through(tmp_path):
+    scenes.empty_file()
+    scenes.cube()
+    camera = scenes.link("camera", bpy.data.cameras.new("camera"))
+    camera.location, camera.data.shift_x = (0, -9, 0), 0.25
+    scene = bpy.context.scene
+    scene.camera, scene.world = camera, bpy.data.worlds.new("world")
+    scene.render.resolution_x, scene.render.resolution_y = 640, 320
+    scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (1, 0, 0, 1)
+    found = voxrt.load(saved(tmp_path / "view.blend"))
+    assert found.viewpoint.name == "camera"
+    assert found.viewpoint.eye == pytest.approx((0, 0, 9))
+    assert found.viewpoint.shift == pytest.approx((0.5, 0))  # a quarter of the width
+    assert found.materials[0].colour == (255, 0, 0)
+
+
 def test_the_parent_never_imports_blender(cube_file):
     code = f"import sys, voxrt; print(voxrt.load({str(cube_file)!r})); assert 'bpy' not in sys.modules"
     printed = subprocess.run([sys.executable, "-P", "-c", code], capture_output=True, text=True, check=True)
