@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from voxrt.voxelize.formats.authored_properties import PREFIX, MaterialProperties, checked_properties
-from voxrt.voxelize.formats.blend.nodes import Product, product, source, threshold
+from voxrt.voxelize.formats.blend.nodes import Product, output_of, product, source, threshold
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -91,10 +91,10 @@ class Materials:
         """Return the colour and the alpha of a material, and the alpha from which on it is solid, or None."""
         red, green, blue, alpha = material.diffuse_color
         plain = Product((red, green, blue)), Product((alpha, alpha, alpha)), None
-        if material.node_tree is None:
+        output = output_of(material)
+        if output is None:
             return plain
-        output = material.node_tree.get_output_node("ALL")
-        found = None if output is None else _surface_node(output.inputs["Surface"])
+        found = _surface_node(output.inputs["Surface"])
         if found is None:
             self._log.add("shader", "materials without a shader of one colour took their viewport colour")
             return Product((red, green, blue)), Product(), None

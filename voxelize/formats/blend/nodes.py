@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+import bpy
 import numpy as np
 
 if TYPE_CHECKING:
@@ -39,6 +40,13 @@ class Product:
     image: ImageUse | None = None
     attribute: str | None = None  # the name of a colour attribute; empty for the one that is active for renders
     channel: str = "colour"
+
+
+def output_of(owner: Any) -> Any:
+    """Return the output node of a material or a world; None where it has no nodes."""
+    if owner.node_tree is None or (bpy.app.version < (5, 0, 0) and not owner.use_nodes):  # later ones always use them
+        return None
+    return owner.node_tree.get_output_node("ALL")
 
 
 def source(socket: Socket, groups: Groups = ()) -> tuple[Any, Any, Groups] | None:

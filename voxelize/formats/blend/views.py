@@ -10,7 +10,7 @@ import numpy as np
 
 from voxrt.voxelize.colour.srgb import srgb_from_linear
 from voxrt.voxelize.formats.blend.axes import placed_camera
-from voxrt.voxelize.formats.blend.nodes import product, source
+from voxrt.voxelize.formats.blend.nodes import output_of, product, source
 from voxrt.voxelize.formats.camera_viewpoint import camera_viewpoint
 
 if TYPE_CHECKING:
@@ -84,9 +84,9 @@ def _sky(world: Any) -> tuple[int, int, int] | None:
     if world is None:
         return None
     linear: tuple[float, ...] = tuple(world.color)
-    if world.node_tree is not None:
-        output = world.node_tree.get_output_node("ALL")
-        found = None if output is None else source(output.inputs["Surface"])
+    output = output_of(world)
+    if output is not None:
+        found = source(output.inputs["Surface"])
         if found is None:
             return (0, 0, 0)
         node, _, groups = found
