@@ -116,7 +116,7 @@ def test_rigid_bodies_are_colliders(shape):
     scene = read()
     kind, volume = BODIES[shape]
     assert [type(one).__name__ for one in scene.objects[0].colliders] == [kind]
-    bounds = (-1.6, -1.6, -1.6, 1.6, 1.6, 1.6)
+    bounds = (-1.61, -1.61, -1.61, 1.61, 1.61, 1.61)
     built = voxrt.build(scene, depth=7, bounds=bounds, rule="half", pow2="none")
     assert built.solid_voxels * built.rom.grid.voxel_size**3 == pytest.approx(volume, rel=0.03)
 
