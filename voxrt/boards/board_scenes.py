@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 _STAGES = ("load", "fit", "colour", "voxelize", "octree")
 
 _MEMORY_SUFFIXES = (".blob", ".mem")
-ASSET_READER_SUFFIXES = (*_MEMORY_SUFFIXES, *sorted(SUFFIXES))
-"""Suffixes of the files that hold a scene."""
+ASSET_READER_SUFFIXES = (*_MEMORY_SUFFIXES, *sorted(set(SUFFIXES) - {".blend"}))
+"""Suffixes of the files that hold a scene, of strangers too: Blender is not made to read theirs."""
 
 
 def board_scene(blob: Blob) -> Scene:

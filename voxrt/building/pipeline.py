@@ -49,8 +49,8 @@ def build(
     Parameters
     ----------
     asset
-        A glTF, OBJ, USD, STL or PLY file, or a scene of some (.toml); a mesh or a scene of trimesh; vertices and faces
-        as arrays, ``(vertices, faces)``; a :class:`Scene`.
+        A glTF, Blender, OBJ, USD, STL or PLY file, or a scene of some (.toml); a mesh or a scene of trimesh; vertices
+        and faces as arrays, ``(vertices, faces)``; a :class:`Scene`.
     output
         Folder for ``NAME.mem`` and ``NAME.json``, where NAME is the name of the file or of the scene; or the file of
         words itself, such as ``yard.mem`` or ``yard.coe``. Folders are made if they are missing. None writes neither.
