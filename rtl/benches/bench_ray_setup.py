@@ -10,7 +10,7 @@ from structs import DISTANCE, RAY, SHADOW_POINT, WEIGHT, WORLD, packed_array, si
 
 LANES, LATENCY = 3, 60
 SCAN_BITS = 29  # voxrt_pkg::ScanBits.
-KEY_BITS = 52  # voxrt_pkg::key_bits(6, 1).
+KEY_BITS = 51  # voxrt_pkg::key_bits(6, 0).
 
 
 def some_position(side):
@@ -53,7 +53,7 @@ async def collect(dut, into):
             into.append(seen(dut))
 
 
-def expected(ray, lane, tag, shadow):
+def expected(ray, lane, tag, shadow, key_bits):
     """Give what `seen` shall give; of a resolved ray only what is of use."""
     values = {"lane": lane, "resolved": ray.resolved, "overflow": ray.overflow, "shadow": shadow}
     if shadow:
@@ -65,7 +65,7 @@ def expected(ray, lane, tag, shadow):
         "dead": ray.dead,
         "octant": ray.octant,
         "weights": ray.weight,
-        "entry_time": ray.entry_time % (1 << KEY_BITS),
+        "entry_time": ray.entry_time % (1 << key_bits),
         "entry_face": ray.entry_face,
         "origin": ray.origin,
     }
@@ -82,6 +82,7 @@ async def frame(dut, count, kind):
     """Send rays of one frame, and compare."""
     depth = random.randint(1, 6)
     side, position, there = 1 << depth, some_position(1 << depth), pace(kind)
+    light = int(dut.Light.value)
     drive(dut, world_i=world(position, depth), root_leaf_i=0, root_material_i=0)
     got, wanted = [], []
     collector = cocotb.start_soon(collect(dut, got))
@@ -90,10 +91,10 @@ async def frame(dut, count, kind):
             drive(dut, valid_i=0)
             await RisingEdge(dut.clk_i)
             continue
-        lane, tag, shadow = 1 << random.randrange(LANES), random.randrange(256), random.random() < 0.3
+        lane, tag, shadow = 1 << random.randrange(LANES), random.randrange(256), light and random.random() < 0.3
         point, direction = some_shadow(side) if shadow else (position, some_direction())
         ray = ray_of(point, direction, side, unit=32 if shadow else 16, inside=shadow)
-        wanted.append(expected(ray, lane, tag, shadow))
+        wanted.append(expected(ray, lane, tag, shadow, KEY_BITS + light))
         drive(dut, valid_i=1, lane_i=lane, direction_i=direction, shadow_i=shadow, tag_i=tag)
         drive(dut, point_i=packed_array(point if shadow else [0, 0, 0], SHADOW_POINT))
         await taken(dut)

@@ -9,6 +9,8 @@
 // A second ray generator computes the directions again, in pixel order: of a ray, only material and face need come
 // through the lanes. The pipeline never stops; a pixel enters when there is a credit for the FIFO behind.
 //
+// With RayClocks = 8 voxrt_serial_shader does the work, and nothing of the pipeline is left after synthesis.
+//
 // Pipeline: direction, material | sizes | squares: two clocks | sums | colour x square: two clocks | dividend |
 // 8 bits of the quotient | FIFO.
 `include "voxrt_assert.svh"
@@ -18,7 +20,7 @@ module voxrt_shader
 #(
   parameter int unsigned Lanes     = 1,     // Lanes that the pixels come from.
   parameter bit          Given     = 1'b0,  // voxrt_brightness is there.
-  parameter int unsigned RayClocks = 1      // 1, or 4: one multiplier for three axes or channels.
+  parameter int unsigned RayClocks = 1      // 1; 4: one multiplier for three axes or channels; 8: without Given.
 ) (
   input  logic            clk_i,
   input  logic            rst_ni,
@@ -37,6 +39,9 @@ module voxrt_shader
   input  logic            pixel_ready_i,
   output shaded_pixel_t   pixel_o
 );
+  localparam bit Serial = RayClocks == 8;
+  if (Serial && Given) $error("voxrt_shader: RayClocks = 8 does not go with Given");
+
   localparam int unsigned SumBits = SquareBits + 2;
   localparam int unsigned Setup = 8;
   localparam int unsigned Stages = Setup + 8;
@@ -48,6 +53,28 @@ module voxrt_shader
     logic   line_end;
     logic   last;
   } info_t;
+
+  // One axis and one channel after the other.
+  logic serial_ready, serial_valid;
+  shaded_pixel_t serial_pixel;
+
+  if (Serial) begin : gen_serial
+    voxrt_serial_shader u_serial (
+      .clk_i,
+      .rst_ni,
+      .raster_i,
+      .shading_i,
+      .material_write_i,
+      .valid_i,
+      .ready_o      (serial_ready),
+      .pixel_i,
+      .pixel_valid_o(serial_valid),
+      .pixel_ready_i,
+      .pixel_o      (serial_pixel)
+    );
+  end else begin : gen_pipeline
+    assign {serial_ready, serial_valid, serial_pixel} = '0;
+  end
 
   // Directions.
   logic direction_valid, enters, first, line_end, last;
@@ -86,12 +113,15 @@ module voxrt_shader
     .advance_o(advance)
   );
 
+  logic ready;
+
   if (Ahead) begin : gen_ahead
-    assign ready_o = ready_q;
+    assign ready = ready_q;
   end else begin : gen_at_once
-    assign ready_o = ready_q && direction_valid && advance;
+    assign ready = ready_q && direction_valid && advance;
   end
-  assign enters = valid_i && ready_o;
+  assign ready_o = Serial ? serial_ready : ready;
+  assign enters  = valid_i && ready && !Serial;
 
   always_ff @(posedge clk_i) begin
     credits_q <= credits_q - CountBits'(enters) + CountBits'(leaves);
@@ -257,8 +287,8 @@ module voxrt_shader
   end
 
   // Out.
-  logic fifo_ready;
-  shaded_pixel_t shaded;
+  logic fifo_ready, fifo_valid;
+  shaded_pixel_t shaded, fifo_pixel;
 
   always_comb begin
     shaded.colour   = '{red: quotient[0], green: quotient[1], blue: quotient[2]};
@@ -277,12 +307,14 @@ module voxrt_shader
     .valid_i(moves[Stages]),
     .ready_o(fifo_ready),
     .data_i (shaded),
-    .valid_o(pixel_valid_o),
+    .valid_o(fifo_valid),
     .ready_i(pixel_ready_i),
-    .data_o (pixel_o)
+    .data_o (fifo_pixel)
   );
 
-  assign leaves = pixel_valid_o && pixel_ready_i;
+  assign pixel_valid_o = Serial ? serial_valid : fifo_valid;
+  assign pixel_o       = Serial ? serial_pixel : fifo_pixel;
+  assign leaves        = fifo_valid && pixel_ready_i;
 
   `VOXRT_ASSERT(FifoHoldsPixel, !moves[Stages] || fifo_ready)
   `VOXRT_ASSERT(CreditsWithinPlaces, credits_q <= CountBits'(FifoDepth))

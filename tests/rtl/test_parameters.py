@@ -21,7 +21,7 @@ RANGES = {
         "MaxDepth": ((2, 16), (1, 17)),
         "PositionBits": ((6, 32), (5, 33)),
         "BlockBits": ((5, 24), (4, 25)),
-        "RayClocks": ((1, 4), (0, 2, 3, 5)),
+        "RayClocks": ((1, 4, 8), (0, 2, 3, 5, 7)),
         "MemoryForm": ((0, 2), (3,)),
     },
     "voxrt_axi_read_master": {"UnderWay": ((2, 256), (1, 6, 512)), "TimeoutBits": ((1, 32), (0, 33))},
