@@ -144,8 +144,8 @@ module voxrt_serial_shader
     end
   end
 
-  // 6, 7: colour x square. The table is not in block RAM, which the octree may fill up.
-  (* ram_style = "distributed" *)
+  // 6, 7: colour x square. The table is in block RAM: its 256 entries would take a sixth of such a part's memories in logic.
+  (* ram_style = "block" *)
   colour_t table_q[256];
   colour_t colour_q;
   logic [7:0] channel;
