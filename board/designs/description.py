@@ -105,7 +105,7 @@ class Description(_Part, frozen=True):
 class GowinPll(_Part, frozen=True):
     """The system clock is 756 MHz / system."""
 
-    system_divider: Annotated[int, msgspec.Meta(ge=10, le=24)]
+    system_divider: Literal[10, 12, 14, 16, 18, 20, 21, 24]
 
 
 class GowinPins(_Part, frozen=True):

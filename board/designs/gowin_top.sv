@@ -1,6 +1,6 @@
 // The ray tracer on a board with a Gowin GW2A: a scene from block RAM on the DVI connector, no host needed.
 //
-// docs/gowin_board.md is about the design; board/designs/NAME/board.json holds pins and parameters of a board. System
+// docs/tang-nano-20k.md is about the design; board/designs/NAME/board.json holds pins and parameters of a board. System
 // clock and pixel clock come from two PLLs: nothing relies on their phases.
 module gowin_top #(
   parameter int unsigned SystemDivider = 14,

@@ -70,7 +70,9 @@ BUILDS = {
     "ray_setup-shared": Build(
         "voxrt_ray_setup", {"MaxDepth": 6, "Lanes": 3, "Light": 1, "RayClocks": 4}, ("bench_ray_setup",)
     ),
-    "ray_setup-serial": Build("voxrt_ray_setup", {"MaxDepth": 6, "Lanes": 3, "RayClocks": 8}, ("bench_ray_setup",), narrow=True),
+    "ray_setup-serial": Build(
+        "voxrt_ray_setup", {"MaxDepth": 6, "Lanes": 3, "RayClocks": 8}, ("bench_ray_setup",), narrow=True
+    ),
     "divide": Build("voxrt_divide", {}, ("bench_divide",)),
     "shader": Build("voxrt_shader", {}, ("bench_shader",)),
     "shader-many": Build("voxrt_shader", {"Lanes": 5}, ("bench_shader",)),

@@ -14,21 +14,21 @@ module voxrt_serial_ray_setup
   parameter int unsigned PositionBits = 17,
   parameter int unsigned Lanes        = 1
 ) (
-  input  logic                             clk_i,
-  input  logic                             rst_ni,
+  input  logic                       clk_i,
+  input  logic                       rst_ni,
   // See voxrt_ray_setup.
-  input  world_t                           world_i,
-  input  logic                             root_leaf_i,
-  input  material_t                        root_material_i,
-  input  logic                             valid_i,
-  output logic                             ready_o,
-  input  logic             [    Lanes-1:0] lane_i,
-  input  logic signed      [ ScanBits-1:0] direction_i    [3],
-  output logic                             valid_o,
-  output logic             [    Lanes-1:0] lane_o,
-  output logic                             overflow_o,
-  output ray_t                             ray_o,
-  output weights_t                         weights_o
+  input  world_t                     world_i,
+  input  logic                       root_leaf_i,
+  input  material_t                  root_material_i,
+  input  logic                       valid_i,
+  output logic                       ready_o,
+  input  logic        [   Lanes-1:0] lane_i,
+  input  logic signed [ScanBits-1:0] direction_i    [3],
+  output logic                       valid_o,
+  output logic        [   Lanes-1:0] lane_o,
+  output logic                       overflow_o,
+  output ray_t                       ray_o,
+  output weights_t                   weights_o
 );
   localparam int unsigned DistanceBits = distance_bits(MaxDepth, PositionBits);
   localparam int unsigned TimeBits = DistanceBits + WeightBits;

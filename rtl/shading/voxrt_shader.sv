@@ -9,7 +9,7 @@
 // A second ray generator computes the directions again, in pixel order: of a ray, only material and face need come
 // through the lanes. The pipeline never stops; a pixel enters when there is a credit for the FIFO behind.
 //
-// With RayClocks = 8 voxrt_serial_shader does the work, and nothing of the pipeline is left after synthesis.
+// With RayClocks = 8 voxrt_serial_shader does the work. Nothing reads the pipeline then, and synthesis drops it.
 //
 // Pipeline: direction, material | sizes | squares: two clocks | sums | colour x square: two clocks | dividend |
 // 8 bits of the quotient | FIFO.
@@ -39,8 +39,7 @@ module voxrt_shader
   input  logic            pixel_ready_i,
   output shaded_pixel_t   pixel_o
 );
-  localparam bit Serial = RayClocks == 8;
-  if (Serial && Given) $error("voxrt_shader: RayClocks = 8 does not go with Given");
+  if (RayClocks == 8 && Given) $error("voxrt_shader: RayClocks = 8 does not go with Given");
 
   localparam int unsigned SumBits = SquareBits + 2;
   localparam int unsigned Setup = 8;
@@ -53,28 +52,6 @@ module voxrt_shader
     logic   line_end;
     logic   last;
   } info_t;
-
-  // One axis and one channel after the other.
-  logic serial_ready, serial_valid;
-  shaded_pixel_t serial_pixel;
-
-  if (Serial) begin : gen_serial
-    voxrt_serial_shader u_serial (
-      .clk_i,
-      .rst_ni,
-      .raster_i,
-      .shading_i,
-      .material_write_i,
-      .valid_i,
-      .ready_o      (serial_ready),
-      .pixel_i,
-      .pixel_valid_o(serial_valid),
-      .pixel_ready_i,
-      .pixel_o      (serial_pixel)
-    );
-  end else begin : gen_pipeline
-    assign {serial_ready, serial_valid, serial_pixel} = '0;
-  end
 
   // Directions.
   logic direction_valid, enters, first, line_end, last;
@@ -101,7 +78,7 @@ module voxrt_shader
   // Credits: places in the FIFO that are not reserved for a pixel under way.
   localparam int unsigned CountBits = $clog2(FifoDepth) + 1;
   logic [CountBits-1:0] credits_q;
-  logic leaves, ready_q, advance;
+  logic leaves, ready_q, ready, advance;
   logic [1:0] turn;
 
   voxrt_turns #(
@@ -113,15 +90,12 @@ module voxrt_shader
     .advance_o(advance)
   );
 
-  logic ready;
-
   if (Ahead) begin : gen_ahead
     assign ready = ready_q;
   end else begin : gen_at_once
     assign ready = ready_q && direction_valid && advance;
   end
-  assign ready_o = Serial ? serial_ready : ready;
-  assign enters  = valid_i && ready && !Serial;
+  assign enters = valid_i && ready;
 
   always_ff @(posedge clk_i) begin
     credits_q <= credits_q - CountBits'(enters) + CountBits'(leaves);
@@ -312,9 +286,30 @@ module voxrt_shader
     .data_o (fifo_pixel)
   );
 
-  assign pixel_valid_o = Serial ? serial_valid : fifo_valid;
-  assign pixel_o       = Serial ? serial_pixel : fifo_pixel;
-  assign leaves        = fifo_valid && pixel_ready_i;
+  assign leaves = fifo_valid && pixel_ready_i;
+
+  if (RayClocks == 8) begin : gen_serial
+    voxrt_serial_shader u_serial (
+      .clk_i,
+      .rst_ni,
+      .raster_i,
+      .shading_i,
+      .material_write_i,
+      .valid_i,
+      .ready_o,
+      .pixel_i,
+      .pixel_valid_o,
+      .pixel_ready_i,
+      .pixel_o
+    );
+
+    logic unused_pipeline;
+    assign unused_pipeline = ^fifo_pixel;
+  end else begin : gen_pipeline
+    assign ready_o       = ready;
+    assign pixel_valid_o = fifo_valid;
+    assign pixel_o       = fifo_pixel;
+  end
 
   `VOXRT_ASSERT(FifoHoldsPixel, !moves[Stages] || fifo_ready)
   `VOXRT_ASSERT(CreditsWithinPlaces, credits_q <= CountBits'(FifoDepth))
