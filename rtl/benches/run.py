@@ -70,16 +70,14 @@ BUILDS = {
     "ray_setup-shared": Build(
         "voxrt_ray_setup", {"MaxDepth": 6, "Lanes": 3, "Light": 1, "RayClocks": 4}, ("bench_ray_setup",)
     ),
-    "ray_setup-serial": Build(
-        "voxrt_ray_setup", {"MaxDepth": 6, "Lanes": 3, "RayClocks": 8}, ("bench_ray_setup",), narrow=True
-    ),
+    "ray_setup-serial": Build("voxrt_serial_ray_setup", {"MaxDepth": 6, "Lanes": 3}, ("bench_ray_setup",), narrow=True),
     "divide": Build("voxrt_divide", {}, ("bench_divide",)),
     "shader": Build("voxrt_shader", {}, ("bench_shader",)),
     "shader-many": Build("voxrt_shader", {"Lanes": 5}, ("bench_shader",)),
     "shader-many-shared": Build("voxrt_shader", {"Lanes": 5, "RayClocks": 4}, ("bench_shader",), narrow=True),
     "shader-given": Build("voxrt_shader", {"Given": 1}, ("bench_shader",)),
     "shader-shared": Build("voxrt_shader", {"RayClocks": 4}, ("bench_shader",), narrow=True),
-    "shader-serial": Build("voxrt_shader", {"RayClocks": 8}, ("bench_shader",), narrow=True),
+    "shader-serial": Build("voxrt_serial_shader", {}, ("bench_shader",), narrow=True),
     "multiply": Build("voxrt_multiply", {"ABits": 40, "BBits": 8}, ("bench_multiply",)),
     "multiply-split": Build("voxrt_multiply", {"ABits": 20, "BBits": 20, "LogicBits": 3}, ("bench_multiply",)),
     "multiply-split-wide": Build("voxrt_multiply", {"ABits": 40, "BBits": 8, "LogicBits": 16}, ("bench_multiply",)),

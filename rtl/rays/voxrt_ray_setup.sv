@@ -12,8 +12,6 @@
 // Shadow rays share the pipeline (Light): each has an origin of its own, in 1/32 voxel and in the world, and its entry
 // key is (0, FaceNone). Lanes read a dozen words per ray: one setup has time for both kinds.
 //
-// With RayClocks = 8 voxrt_serial_ray_setup does the work. Nothing reads the pipeline then, and synthesis drops it.
-//
 // Pipeline: sign and size | multiply | weight | plane 0: three clocks | compare | entry key | key - plane 0, half of
 // the world's time | compare | out.
 module voxrt_ray_setup
@@ -24,7 +22,7 @@ module voxrt_ray_setup
   parameter int unsigned Lanes        = 1,
   parameter bit          Light        = 1'b0,
   parameter bit          Lod          = 1'b0,
-  parameter int unsigned RayClocks    = 1      // 1; 4: one multiplier for three axes; 8: without Light and Lod.
+  parameter int unsigned RayClocks    = 1      // 1, or 4: one multiplier for three axes.
 ) (
   input logic clk_i,
   input logic rst_ni,
@@ -48,8 +46,6 @@ module voxrt_ray_setup
   output ray_t ray_o,
   output weights_t weights_o
 );
-  if (RayClocks == 8 && (Light || Lod)) $error("voxrt_ray_setup: RayClocks = 8 does not go with Light and Lod");
-
   localparam int unsigned PointBits = MaxDepth + ShadowFractionBits + 2;
   localparam int unsigned DistanceBits = distance_bits(MaxDepth, PositionBits);
   localparam int unsigned TimeBits = DistanceBits + WeightBits;
@@ -87,6 +83,8 @@ module voxrt_ray_setup
     .turn_o   (turn),
     .advance_o(advance)
   );
+
+  assign ready_o = advance;
 
   // With many lanes valid_i is a long path, so it does not enable the multipliers. They may read a direction without a
   // ray.
@@ -411,58 +409,29 @@ module voxrt_ray_setup
     end
   end
 
-  if (RayClocks == 8) begin : gen_serial
-    voxrt_serial_ray_setup #(
-      .MaxDepth    (MaxDepth),
-      .PositionBits(PositionBits),
-      .Lanes       (Lanes)
-    ) u_serial (
-      .clk_i,
-      .rst_ni,
-      .world_i,
-      .root_leaf_i,
-      .root_material_i,
-      .valid_i,
-      .ready_o,
-      .lane_i,
-      .direction_i,
-      .valid_o,
-      .lane_o,
-      .overflow_o,
-      .ray_o,
-      .weights_o
-    );
+  assign valid_o    = moves[11];
+  assign lane_o     = lane_q[11];
+  assign overflow_o = overflow_q[11];
 
-    logic unused_pipeline;
-    assign unused_pipeline = ^{moves[11], lane_q[11], overflow_q[11], outside_q[11], entry_face_q[11], shadow11, tag11,
-                               point11[0], point11[1], point11[2], mirrored_q[11], dead_q[11], past_middle_q[11],
-                               entry_time_key_q[11], reach11, weight_q[11][0], weight_q[11][1], weight_q[11][2]};
-  end else begin : gen_pipeline
-    assign ready_o    = advance;
-    assign valid_o    = moves[11];
-    assign lane_o     = lane_q[11];
-    assign overflow_o = overflow_q[11];
-
-    always_comb begin
-      ray_o.resolved = outside_q[11] || root_leaf_i;
-      ray_o.pixel    = '{material: '0, face: FaceNone};
-      if (!outside_q[11] && root_material_i != '0) begin
-        ray_o.pixel = '{material: root_material_i, face: entry_face_q[11]};
-      end
-      ray_o.lit        = !overflow_q[11];
-      ray_o.shadow     = shadow11;
-      ray_o.tag        = tag11;
-      ray_o.mirrored   = mirrored_q[11];
-      ray_o.dead       = dead_q[11];
-      ray_o.octant     = past_middle_q[11];
-      ray_o.entry_time = KeyLimit'(entry_time_key_q[11]);
-      ray_o.entry_face = entry_face_q[11];
-      ray_o.reach      = reach11;
-      for (int unsigned a = 0; a < 3; a++) begin
-        weights_o[a]    = weight_q[11][a];
-        ray_o.origin[a] = DistanceLimit'(mirrored_q[11][a] ? mirrored_world_origin[a] : world_origin[a]);
-        if (shadow11) ray_o.origin[a] = DistanceLimit'(point11[a]);
-      end
+  always_comb begin
+    ray_o.resolved = outside_q[11] || root_leaf_i;
+    ray_o.pixel    = '{material: '0, face: FaceNone};
+    if (!outside_q[11] && root_material_i != '0) begin
+      ray_o.pixel = '{material: root_material_i, face: entry_face_q[11]};
+    end
+    ray_o.lit        = !overflow_q[11];
+    ray_o.shadow     = shadow11;
+    ray_o.tag        = tag11;
+    ray_o.mirrored   = mirrored_q[11];
+    ray_o.dead       = dead_q[11];
+    ray_o.octant     = past_middle_q[11];
+    ray_o.entry_time = KeyLimit'(entry_time_key_q[11]);
+    ray_o.entry_face = entry_face_q[11];
+    ray_o.reach      = reach11;
+    for (int unsigned a = 0; a < 3; a++) begin
+      weights_o[a]    = weight_q[11][a];
+      ray_o.origin[a] = DistanceLimit'(mirrored_q[11][a] ? mirrored_world_origin[a] : world_origin[a]);
+      if (shadow11) ray_o.origin[a] = DistanceLimit'(point11[a]);
     end
   end
 endmodule

@@ -9,8 +9,6 @@
 // A second ray generator computes the directions again, in pixel order: of a ray, only material and face need come
 // through the lanes. The pipeline never stops; a pixel enters when there is a credit for the FIFO behind.
 //
-// With RayClocks = 8 voxrt_serial_shader does the work. Nothing reads the pipeline then, and synthesis drops it.
-//
 // Pipeline: direction, material | sizes | squares: two clocks | sums | colour x square: two clocks | dividend |
 // 8 bits of the quotient | FIFO.
 `include "voxrt_assert.svh"
@@ -20,7 +18,7 @@ module voxrt_shader
 #(
   parameter int unsigned Lanes     = 1,     // Lanes that the pixels come from.
   parameter bit          Given     = 1'b0,  // voxrt_brightness is there.
-  parameter int unsigned RayClocks = 1      // 1; 4: one multiplier for three axes or channels; 8: without Given.
+  parameter int unsigned RayClocks = 1      // 1, or 4: one multiplier for three axes or channels.
 ) (
   input  logic            clk_i,
   input  logic            rst_ni,
@@ -39,8 +37,6 @@ module voxrt_shader
   input  logic            pixel_ready_i,
   output shaded_pixel_t   pixel_o
 );
-  if (RayClocks == 8 && Given) $error("voxrt_shader: RayClocks = 8 does not go with Given");
-
   localparam int unsigned SumBits = SquareBits + 2;
   localparam int unsigned Setup = 8;
   localparam int unsigned Stages = Setup + 8;
@@ -78,7 +74,7 @@ module voxrt_shader
   // Credits: places in the FIFO that are not reserved for a pixel under way.
   localparam int unsigned CountBits = $clog2(FifoDepth) + 1;
   logic [CountBits-1:0] credits_q;
-  logic leaves, ready_q, ready, advance;
+  logic leaves, ready_q, advance;
   logic [1:0] turn;
 
   voxrt_turns #(
@@ -91,11 +87,11 @@ module voxrt_shader
   );
 
   if (Ahead) begin : gen_ahead
-    assign ready = ready_q;
+    assign ready_o = ready_q;
   end else begin : gen_at_once
-    assign ready = ready_q && direction_valid && advance;
+    assign ready_o = ready_q && direction_valid && advance;
   end
-  assign enters = valid_i && ready;
+  assign enters = valid_i && ready_o;
 
   always_ff @(posedge clk_i) begin
     credits_q <= credits_q - CountBits'(enters) + CountBits'(leaves);
@@ -261,8 +257,8 @@ module voxrt_shader
   end
 
   // Out.
-  logic fifo_ready, fifo_valid;
-  shaded_pixel_t shaded, fifo_pixel;
+  logic fifo_ready;
+  shaded_pixel_t shaded;
 
   always_comb begin
     shaded.colour   = '{red: quotient[0], green: quotient[1], blue: quotient[2]};
@@ -281,35 +277,12 @@ module voxrt_shader
     .valid_i(moves[Stages]),
     .ready_o(fifo_ready),
     .data_i (shaded),
-    .valid_o(fifo_valid),
+    .valid_o(pixel_valid_o),
     .ready_i(pixel_ready_i),
-    .data_o (fifo_pixel)
+    .data_o (pixel_o)
   );
 
-  assign leaves = fifo_valid && pixel_ready_i;
-
-  if (RayClocks == 8) begin : gen_serial
-    voxrt_serial_shader u_serial (
-      .clk_i,
-      .rst_ni,
-      .raster_i,
-      .shading_i,
-      .material_write_i,
-      .valid_i,
-      .ready_o,
-      .pixel_i,
-      .pixel_valid_o,
-      .pixel_ready_i,
-      .pixel_o
-    );
-
-    logic unused_pipeline;
-    assign unused_pipeline = ^fifo_pixel;
-  end else begin : gen_pipeline
-    assign ready_o       = ready;
-    assign pixel_valid_o = fifo_valid;
-    assign pixel_o       = fifo_pixel;
-  end
+  assign leaves = pixel_valid_o && pixel_ready_i;
 
   `VOXRT_ASSERT(FifoHoldsPixel, !moves[Stages] || fifo_ready)
   `VOXRT_ASSERT(CreditsWithinPlaces, credits_q <= CountBits'(FifoDepth))
