@@ -3,7 +3,7 @@
 //
 // 27 MHz x 14 / 3 is the nearest to 125 MHz that both PLL's dividers and a whole number of pixels allow: 60 Hz exactly.
 module gowin_clocks #(
-  parameter int unsigned SystemDivider = 14  // 10, 12, 14, 16, 18, 20, 21 or 24.
+  parameter int unsigned SystemDivider = 10  // 10, 12, 14, 16, 18, 20, 21 or 24.
 ) (
   input  logic clk_i,
   output logic bit_clk_o,
@@ -13,7 +13,7 @@ module gowin_clocks #(
 );
   // The oscillator inside runs at 500 to 1,250 MHz: the output's frequency times OutputDivider.
   localparam int unsigned BitOutputDivider = 8;
-  localparam int unsigned SystemOutputDivider = 16;
+  localparam int unsigned SystemOutputDivider = SystemDivider < 12 ? 8 : 16;
   // 28 / SystemDivider in lowest terms.
   localparam int unsigned Common = SystemDivider % 28 == 14 ? 14 : SystemDivider % 28 == 21 ? 7 :
       SystemDivider % 4 == 0 ? 4 : SystemDivider % 2 == 0 ? 2 : 1;

@@ -3,7 +3,7 @@
 // docs/tang-nano-20k.md is about the design; board/designs/NAME/board.json holds pins and parameters of a board. System
 // clock and pixel clock come from two PLLs: nothing relies on their phases.
 module gowin_top #(
-  parameter int unsigned SystemDivider = 14,
+  parameter int unsigned SystemDivider = 10,
   parameter int unsigned Lanes         = 1,
   parameter int unsigned MaxDepth      = 10,
   parameter int unsigned PositionBits  = 17,
