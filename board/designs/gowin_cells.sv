@@ -119,7 +119,7 @@ endmodule
 
 // A pair of pins, of which one is the other's complement.
 (* blackbox *)
-module ELVDS_OBUF (
+module TLVDS_OBUF (
   input  logic I,
   output logic O,
   output logic OB

@@ -31,7 +31,7 @@ module gowin_serializer #(
       .Q    (serial)
     );
 
-    ELVDS_OBUF u_pins (
+    TLVDS_OBUF u_pins (
       .I (serial),
       .O (pins_o[c]),
       .OB(pins_no[c])

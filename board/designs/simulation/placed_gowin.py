@@ -25,7 +25,7 @@ MODELS = (_HERE.parent / "gowin_cells.sv", _HERE / "placed_gowin_ram.v")
 """The models of PLLs, serializers and block RAM that the Verilog needs."""
 
 _FLIP_FLOP = re.compile(r"DFF(N?)([SRPC]?)(E?)")
-_ADD_OR_SUBTRACT = 2
+_ALU_TABLES = {f"{2:032b}": 0x609A, "C2L": 0, "ONE2C": 0xF}  # add or subtract; a carry of 0, or one that comes out; 1
 
 
 def write_block_rams(fs: str, rams: BlockRams, folder: Path) -> None:
@@ -97,13 +97,15 @@ class _Writer:
     def value(self, cell: Mapping[str, Any], pin: str, default: str = "1'b0") -> str:
         """Give what comes in at a pin, as an expression."""
         bits = cell["connections"].get(pin) or [None]
-        bit = bits[0]
-        if bit is None or bit == "x":
-            return default
+        return default if bits[0] in {None, "x"} else self._bit(bits[0])
+
+    def _bit(self, bit: int | str) -> str:
         return f"1'b{bit}" if isinstance(bit, str) else self._use(bit)
 
     def bus(self, cell: Mapping[str, Any], pin: str, width: int) -> str:
-        """Give what comes in at the pins of a bus."""
+        """Give what comes in at the pins of a bus, which are ports of their own, or one port."""
+        if pin in cell["connections"]:
+            return "{" + ", ".join(self._bit(bit) for bit in reversed(cell["connections"][pin])) + "}"
         return "{" + ", ".join(self.value(cell, f"{pin}{index}") for index in reversed(range(width))) + "}"
 
     def _use(self, bit: int) -> str:
@@ -113,9 +115,12 @@ class _Writer:
     def drive(self, cell: Mapping[str, Any], pin: str, expression: str) -> None:
         """Connect an output, if anything is connected to it."""
         for bit in cell["connections"].get(pin) or []:
-            if isinstance(bit, int):
-                self._driven.add(bit)
-                self._lines.append(f"  assign n{bit} = {expression};")
+            self._drive_bit(bit, expression)
+
+    def _drive_bit(self, bit: int | str, expression: str) -> None:
+        if isinstance(bit, int):
+            self._driven.add(bit)
+            self._lines.append(f"  assign n{bit} = {expression};")
 
     def lut(self, _number: int, _name: str, cell: Mapping[str, Any]) -> None:
         inputs = int(cell["type"][3:])
@@ -127,17 +132,19 @@ class _Writer:
         self.drive(cell, "O", f"{choice} ? {one} : {zero}")
 
     def alu(self, _number: int, name: str, cell: Mapping[str, Any]) -> None:
-        mode = cell["parameters"]["ALU_MODE"]
-        if mode == "C2L":  # The head of a chain: the carry is a constant or a signal.
-            self.drive(cell, "COUT", self.value(cell, "I2"))
-            return
-        if set(mode) <= {"0", "1"} and int(mode, 2) == _ADD_OR_SUBTRACT:
-            first, second, adds, carry = (self.value(cell, pin) for pin in ("I0", "I1", "I3", "CIN"))
-            propagates = f"({first} ^ {second} ^ ~{adds})"
-            self.drive(cell, "SUM", f"{propagates} ^ {carry}")
-            self.drive(cell, "COUT", f"{propagates} ? {carry} : {first}")
-            return
-        raise UnknownCellError(f"{name}: an ALU of mode {mode} is not known")
+        # apycula's doc/alu.md: the table of the sum, whose lowest four entries choose the carry where the sum is 0.
+        parameters = cell["parameters"]
+        if "RAW_ALU_LUT" in parameters:
+            table = int(parameters["RAW_ALU_LUT"][-16:], 2)
+        elif parameters["ALU_MODE"] in _ALU_TABLES:
+            table = _ALU_TABLES[parameters["ALU_MODE"]]
+        else:
+            raise UnknownCellError(f"{name}: an ALU of mode {parameters['ALU_MODE']} is not known")
+        inputs = tuple(self.value(cell, f"I{i}", "1'b1") for i in range(4))
+        carry = self.value(cell, "CIN")
+        propagates = lookup(table, inputs)
+        self.drive(cell, "SUM", f"({propagates}) ^ {carry}")
+        self.drive(cell, "COUT", f"({propagates}) ? {carry} : {lookup(table & 0xF, inputs[:2])}")
 
     def flip_flop(self, number: int, cell: Mapping[str, Any], falls: str, kind: str, enabled: str) -> None:
         value = 1 if kind in {"S", "P"} else 0
@@ -162,15 +169,13 @@ class _Writer:
         write, data, read = (self.bus(cell, pin, 4) for pin in ("WAD", "DI", "RAD"))
         self._declarations.append(f"  wire [3:0] d{number} = m{number}[{read}];")
         self._lines.append(f"  always @(posedge {clock}) if ({enable}) m{number}[{write}] <= {data};")
-        for i in range(4):
-            self.drive(cell, f"DO{i}", f"d{number}[{i}]")
+        for i, bit in enumerate(cell["connections"]["DO"]):
+            self._drive_bit(bit, f"d{number}[{i}]")
 
     def block_ram(self, number: int, name: str, cell: Mapping[str, Any]) -> None:
         kind, parameters = cell["type"], cell["parameters"]
         for pin in cell["connections"]:
             if pin.startswith(("BLKSEL", "RESET")) and self._constant(cell, pin) != 0:
-                raise UnknownCellError(f"{name}: a block RAM whose pin {pin} is used is not known")
-            if pin.startswith("OCE") and self._constant(cell, pin) != 1:
                 raise UnknownCellError(f"{name}: a block RAM whose pin {pin} is used is not known")
         if any(int(value, 2) for key, value in parameters.items() if key.startswith("READ_MODE")):
             raise UnknownCellError(f"{name}: a block RAM with output registers is not known")
@@ -232,8 +237,13 @@ class _Writer:
         self.drive(cell, pin, f"1'b{level}")
 
     def buffer(self, _number: int, _name: str, cell: Mapping[str, Any]) -> None:
-        self.drive(cell, "O", self.value(cell, "I"))
-        self.drive(cell, "OB", f"~{self.value(cell, 'I')}")
+        side = cell["parameters"].get("DIFF")
+        if side is None:
+            self.drive(cell, "O", self.value(cell, "I"))
+            return
+        # A pair of pins, with the serializer of its place.
+        place = cell["attributes"]["NEXTPNR_BEL"].split("/")[0]
+        self.drive(cell, "O", f"{'~' if side == 'N' else ''}serial_{place}")
 
     def instance(self, number: int, _name: str, cell: Mapping[str, Any]) -> None:
         kind = cell["type"]
@@ -242,9 +252,12 @@ class _Writer:
         pins = []
         for pin in _INSTANCES[kind]:
             if cell["port_directions"][pin] == "output":
-                self._declarations.append(f"  wire {pin.lower()}_{number};")
-                pins.append(f".{pin}({pin.lower()}_{number})")
-                self.drive(cell, pin, f"{pin.lower()}_{number}")
+                output = f"{pin.lower()}_{number}"
+                if kind == "OSER10":
+                    output = f"serial_{cell['attributes']['NEXTPNR_BEL'].split('/')[0]}"
+                self._declarations.append(f"  wire {output};")
+                pins.append(f".{pin}({output})")
+                self.drive(cell, pin, output)
             else:
                 pins.append(f".{pin}({self.value(cell, pin)})")
         parameters = f" #({', '.join(settings)})" if settings else ""
@@ -257,13 +270,13 @@ _INSTANCES = {
     "CLKDIV": ("HCLKIN", "CLKOUT"),
     "OSER10": (*(f"D{i}" for i in range(10)), "FCLK", "PCLK", "Q"),
 }
-_IGNORED = {"GSR", "DUMMY_CELL", "BANDGAP"}
+_IGNORED = {"GSR", "DUMMY_CELL", "IOLOGIC_DUMMY"}
 _CELLS: dict[str, Callable[[_Writer, int, str, Mapping[str, Any]], None]] = {
     **{f"LUT{inputs}": _Writer.lut for inputs in range(1, 5)},
     **{f"MUX2_LUT{inputs}": _Writer.mux for inputs in range(5, 9)},
     **dict.fromkeys(("SP", "DP", "SDP"), _Writer.block_ram),
     **dict.fromkeys(_CONSTANTS, _Writer.constant),
-    **dict.fromkeys(("IBUF", "OBUF", "BUFG", "ELVDS_OBUF"), _Writer.buffer),
+    **dict.fromkeys(("IBUF", "OBUF", "BUFG"), _Writer.buffer),
     **dict.fromkeys(_INSTANCES, _Writer.instance),
     "ALU": _Writer.alu,
     "RAM16SDP4": _Writer.small_ram,
