@@ -191,7 +191,7 @@ class _Writer:
                 f".MODE_{port}({int(parameters.get(mode, '0'), 2)})",
             ]
             writes = {"SP": "WRE", "DP": f"WRE{suffix}"}.get(kind)
-            # Of a simple dual port memory, port A writes whenever it is enabled, and port B reads.
+            # Port A of a simple dual port memory writes whenever it is enabled, and port B reads.
             write = ("1'b1" if port == "A" else "1'b0") if writes is None else self.value(cell, writes)
             enable = self.value(cell, f"CE{suffix}")
             address = self.bus(cell, f"AD{suffix}", 14)
