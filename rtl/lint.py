@@ -79,7 +79,7 @@ def main() -> int:
         settings = [f"-G{key}={value}" for key, value in configuration.parameters.items()]
         if not lint(f"configuration {name}", TOP, [*settings, *list_sources()]):
             return 1
-    for top, name in (("ecp5_top", "ecp5.f"), ("ecp5_top_sdram", "ecp5_sdram.f")):
+    for top, name in (("ecp5_top", "ecp5.f"), ("ecp5_top_sdram", "ecp5_sdram.f"), ("gowin_top", "gowin.f")):
         designs = [DESIGNS / line for line in (DESIGNS / name).read_text().splitlines() if not line.startswith("//")]
         for lanes in (1, 4):
             arguments = [f"-GLanes={lanes}", DESIGNS / "lint.vlt", *list_sources(), *designs]

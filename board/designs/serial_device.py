@@ -122,7 +122,7 @@ class SerialDevice:
             raise DeviceError(f"{link.name}: design version {version >> 8} is not supported; load a new bitstream")
         configuration = self._core("configuration")
         self.lanes = lanes = configuration["lanes"]
-        self.ray_clocks = configuration["ray_clocks"]
+        self.ray_clocks = configuration["ray_clocks"] or 8
         self.clock_hz = self._board("clock")
         self.buffer_lines = 16 << (version >> 16 & 3)
         self.frame_buffer = bool(configuration["cached"])

@@ -53,6 +53,7 @@ BUILDS = {
     "mirrors": Build(CORE, SMALL | {"Lanes": 2, "Mirrors": 1}, ("bench_core",), repeats=True),
     "micro": Build(CORE, SMALL | {"Lanes": 1, "RayClocks": 4}, ("bench_core",), narrow=True, repeats=True),
     "micro-many": Build(CORE, SMALL | {"Lanes": 5, "RayClocks": 4}, ("bench_core",), narrow=True, repeats=True),
+    "nano": Build(CORE, SMALL | {"Lanes": 1, "RayClocks": 8}, ("bench_core",), narrow=True, repeats=True),
     "lod": Build(CORE, SMALL | {"Lanes": 2, "Lod": 1}, ("bench_lod", "bench_positions")),
     "fifo": Build("voxrt_fifo", {}, ("bench_fifo",)),
     "stream_register": Build("voxrt_stream_register", {}, ("bench_stream_register",)),
@@ -69,12 +70,14 @@ BUILDS = {
     "ray_setup-shared": Build(
         "voxrt_ray_setup", {"MaxDepth": 6, "Lanes": 3, "Light": 1, "RayClocks": 4}, ("bench_ray_setup",)
     ),
+    "ray_setup-serial": Build("voxrt_serial_ray_setup", {"MaxDepth": 6, "Lanes": 3}, ("bench_ray_setup",), narrow=True),
     "divide": Build("voxrt_divide", {}, ("bench_divide",)),
     "shader": Build("voxrt_shader", {}, ("bench_shader",)),
     "shader-many": Build("voxrt_shader", {"Lanes": 5}, ("bench_shader",)),
     "shader-many-shared": Build("voxrt_shader", {"Lanes": 5, "RayClocks": 4}, ("bench_shader",), narrow=True),
     "shader-given": Build("voxrt_shader", {"Given": 1}, ("bench_shader",)),
     "shader-shared": Build("voxrt_shader", {"RayClocks": 4}, ("bench_shader",), narrow=True),
+    "shader-serial": Build("voxrt_serial_shader", {}, ("bench_shader",), narrow=True),
     "multiply": Build("voxrt_multiply", {"ABits": 40, "BBits": 8}, ("bench_multiply",)),
     "multiply-split": Build("voxrt_multiply", {"ABits": 20, "BBits": 20, "LogicBits": 3}, ("bench_multiply",)),
     "multiply-split-wide": Build("voxrt_multiply", {"ABits": 40, "BBits": 8, "LogicBits": 16}, ("bench_multiply",)),

