@@ -8,7 +8,7 @@ PACKAGE := $(shell find CMakeLists.txt pyproject.toml LICENSE README.md voxrt vo
 INSTALLED := $(VENV)/.installed $(VENV)/.dependencies
 CXX_FILES = $(shell find voxelize octree sim web examples tests -name '*.cpp' -o -name '*.h')
 
-.PHONY: help demo configurations test quick assets slow lint lint-scripts lint-workflows hardware boards docs site pages web bench soak sanitize fuzz clean
+.PHONY: help demo configurations test quick assets slow blender blender-test lint lint-scripts lint-workflows hardware boards docs site pages web bench soak sanitize fuzz clean
 .DELETE_ON_ERROR:
 
 help:
@@ -18,6 +18,8 @@ help:
 	@echo "make quick   lint Python, run the tests of the folders that changed since the last commit"
 	@echo "make assets  list the public files that tests read and that are not here, with their origins"
 	@echo "make slow    run the tests that take minutes: the board designs in simulation, every attack on the server"
+	@echo "make blender  pack the extension of Blender into build/blender, for the Python $(BLENDER_PYTHON)"
+	@echo "make blender-test  test it, and the reader of .blend files, in Blender's module bpy"
 	@echo "make lint    ruff, mypy --strict, clang-format, verilator --lint-only -Wall; Biome and tsc; the workflows"
 	@echo "make hardware  check the registers, run the cocotb benches and the formal proofs"
 	@echo "make boards  build the designs of the boards anew, place and route them, simulate what was placed"
@@ -63,10 +65,22 @@ assets:
 slow: $(INSTALLED) $(VENV)/.tools
 	VOXRT_EXPECT_INSTALLED=1 $(BIN)/pytest -m slow
 
+# In an environment of its own: bpy has wheels for one version of Python alone, and 430 MB.
+BLENDER_PYTHON ?= python3.13
+BLENDER_MAKE := $(MAKE) --no-print-directory VENV=.venv-blender PYTHON=$(BLENDER_PYTHON)
+blender:
+	$(BLENDER_MAKE) .venv-blender/.blender .venv-blender/.installed
+	.venv-blender/bin/python -P blender/make_extension.py build/wheel/*.whl
+
+blender-test:
+	$(BLENDER_MAKE) .venv-blender/.blender $(if $(wildcard .venv-blender/.installed),.venv-blender/.installed,.venv-blender/.one)
+	VOXRT_EXPECT_INSTALLED=1 .venv-blender/bin/pytest tests/blender
+
 lint: $(INSTALLED) $(VENV)/.tools lint-workflows lint-scripts
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+	$(BIN)/mypy blender
 	$(BIN)/clang-format --dry-run --Werror $(CXX_FILES)
 	$(BIN)/python rtl/lint.py
 
@@ -223,7 +237,7 @@ build/fuzz/native/%-fuzzer: tests/fuzz/native/%.cpp tests/fuzz/native/driver.cpp
 .SECONDARY: $(COVERED) $(foreach library,libvoxelize liboctree libsim,$(SANITIZERS:%=build/sanitize/%/$(library).a))
 
 clean:
-	rm -rf $(VENV) build demo web/node_modules
+	rm -rf $(VENV) .venv-blender build demo web/node_modules
 
 # Without pip's isolation, so that objects that are made stay valid; with ccache where it is, so that other folders of
 # the same sources are built quickly too. One job server is enough: make's would give Ninja one core.
@@ -244,6 +258,10 @@ $(VENV)/.dependencies: pyproject.toml | $(VENV)/.build
 
 $(VENV)/.tools: pyproject.toml | $(VENV)/.dependencies
 	@$(PIP) install --group dev
+	@touch $@
+
+$(VENV)/.blender: pyproject.toml | $(VENV)/.dependencies
+	@$(PIP) install --group blender
 	@touch $@
 
 # No Python package brings actionlint itself: Go's module proxy has it.

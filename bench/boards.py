@@ -1,8 +1,8 @@
 """Verify the placed design of a board: ``python bench/boards.py NAME [--folder DIR] [--rebuilt] [--write]``.
 
 Needs the folder in which ``python -m voxrt.board.designs.build NAME --netlist`` worked, and a C++ compiler. The
-netlist after place and route is simulated with what was patched into its ``.config``: a monitor decodes the DVI pins,
-and the frames are compared with the exact model's, on three scenes, and after a swap by the serial line. With
+netlist after place and route is simulated with what was patched into its ``.config`` or ``.fs``: a monitor decodes the
+DVI pins, and the frames are compared with the exact model's, on three scenes, and after a swap by the serial line. With
 ``--rebuilt``, one scene is built into the design from its sources as well, which takes another place and route: both
 ``.config`` must be equal. ``--write`` writes ``report.md`` beside the board's description.
 """
@@ -36,8 +36,9 @@ from voxrt.board.designs.boot_table import (
     encode_octree,
     scene_writes,
 )
+from voxrt.board.designs.gowin_bitstream import BlockRams, patch_fs
+from voxrt.board.designs.simulation import placed_gowin, placed_netlist
 from voxrt.board.designs.simulation.board_simulation import BoardSimulation, compile_placed
-from voxrt.board.designs.simulation.placed_netlist import MODELS, placed_verilog, write_block_rams
 from voxrt.board.register_writes import camera_writes
 from voxrt.board.view import Lighting
 from voxrt.boards.board_scenes import load_scene
@@ -71,12 +72,24 @@ def contents_of(scene: Scene, board: dict[str, Any]) -> dict[str, NDArray[np.uin
 
 
 class Placed(NamedTuple):
-    """A placed design: its board, its ``.config``, where memories are in that, and the program that simulates it."""
+    """A placed design: its board, its ``.config``, where memories are in that, and the program that simulates it.
+
+    A design for a Gowin GW2A has its ``.fs`` instead, and block RAMs in that.
+    """
 
     board: dict[str, Any]
     config: str
     slices: dict[str, list[Slice]]
     program: Path
+    rams: BlockRams | None
+
+    def write_contents(self, contents: dict[str, NDArray[np.uint32]], folder: Path) -> None:
+        """Write what block RAMs hold, with these contents of memories, as the simulation reads it."""
+        if self.rams is None:
+            placed_netlist.write_block_rams(patch_config(self.config, self.slices, contents), folder)
+        else:
+            fs = patch_fs(self.config, self.rams, self.slices, contents)
+            placed_gowin.write_block_rams(fs, self.rams, folder)
 
     @property
     def black(self) -> int:
@@ -89,10 +102,12 @@ def verify(name: str, folder: Path, work: Path, *, rebuilt: bool) -> list[tuple[
     board = build.read_board(name)
     described = build.describe(board, name, board["seed"], folder)
     slices = {m: [Slice(**piece) for piece in d["slices"]] for m, d in described["memories"].items()}
-    config = (folder / "top.config").read_text()
-    (work / "placed.v").write_text(placed_verilog(json.loads((folder / "placed.json").read_text())))
-    program = compile_placed(board, [*MODELS, work / "placed.v"], work / "placed")
-    placed = Placed(board, config, slices, program)
+    config = (folder / f"top.{build.config_kind(board)}").read_text()
+    cells = placed_gowin if build.is_gowin(board) else placed_netlist
+    (work / "placed.v").write_text(cells.placed_verilog(json.loads((folder / "placed.json").read_text())))
+    program = compile_placed(board, [*cells.MODELS, work / "placed.v"], work / "placed")
+    rams = BlockRams(**described["block_rams"]) if build.is_gowin(board) else None
+    placed = Placed(board, config, slices, program, rams)
     scenes = {file: load_scene(EXAMPLES / file, depth) for file, depth in SCENES.items()}
     swapped = next(iter(scenes))
 
@@ -109,8 +124,10 @@ def verify(name: str, folder: Path, work: Path, *, rebuilt: bool) -> list[tuple[
         contents = contents_of(scenes["house.obj"], board)
         build.synthesize(board, contents, work)
         build.place_and_route(board, described["seed"], work)
-        same = (work / "top.config").read_text() == patch_config(config, slices, contents)
-        found.append(("the patched .config is the one of a full rebuild with the scene, byte for byte", same))
+        kind = build.config_kind(board)
+        patched = patch_config(config, slices, contents) if rams is None else patch_fs(config, rams, slices, contents)
+        same = (work / f"top.{kind}").read_text() == patched
+        found.append((f"the patched .{kind} is the one of a full rebuild with the scene, byte for byte", same))
     return found
 
 
@@ -122,7 +139,7 @@ def verify_scene(placed: Placed, file: str, scene: Scene, new: Scene | None, wor
         print(f"{file}: {what}: {'holds' if holds else 'FAILS'}", file=sys.stderr)
         found.append((f"{file}: {what}", holds))
 
-    write_block_rams(patch_config(placed.config, placed.slices, contents_of(scene, placed.board)), work)
+    placed.write_contents(contents_of(scene, placed.board), work)
     cameras = orbit(scene)
     with BoardSimulation(placed.program, work) as simulation:
         seen = simulation.frames(placed.black + 2)[placed.black :]
@@ -157,7 +174,8 @@ def report(described: dict[str, Any], title: str, checks: list[tuple[str, bool]]
         "| clock | needed, MHz | allowed by the longest path, MHz |",
         "|---|---|---|",
     ]
-    needed = {"system": described["clock_hz"] / 1e6, "pixel": 25, "bit": 125}
+    pixel = described.get("pixel_hz", 25_000_000) / 1e6
+    needed = {"system": described["clock_hz"] / 1e6, "pixel": pixel, "bit": 5 * pixel}
     lines += [f"| {clock} | {needed[clock]:g} | {mhz:g} |" for clock, mhz in described["fmax_mhz"].items()]
     lines += ["", "| cells | used | of |", "|---|---|---|"]
     lines += [f"| {cell} | {used:,} | {of:,} |" for cell, (used, of) in described["utilisation"].items()]

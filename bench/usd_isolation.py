@@ -17,7 +17,7 @@ from report import ROOT, options_of, publish, table
 
 APART = "from voxrt.voxelize.formats.usd.isolated import read_isolated; read_isolated(path)"
 TOGETHER = """
-from voxrt.voxelize.formats.usd.limits import Allowance, Limits
+from voxrt.voxelize.formats.reader_process.limits import Allowance, Limits
 from voxrt.voxelize.formats.usd.stage_scene import read_stage
 read_stage(path, Allowance(Limits.of_this_machine()), variants=(), time=None, allow_outside=False)
 """

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from voxrt.board.frame_drop import FrameDrop
     from voxrt.board.view import View
+    from voxrt.octree import Patch
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,6 +110,18 @@ class Device(Protocol):
 
     def select_scene(self, root: int, depth: int) -> None:
         """Show the octree of `depth` levels whose root is word `root` from the next frame on. Holds the device."""
+
+    def apply_patch(self, patch: Patch, depth: int) -> None:
+        """Show what an edit changed from the next frame on; frames of older roots may be drawn meanwhile.
+
+        Writes the blocks of the patch, reads them back, writes the word of its root, and selects this root. If that
+        fails, frames still show the octree before.
+
+        Raises
+        ------
+        DeviceError
+            A word was not kept.
+        """
 
     def frame(self, view: View, seconds: float = math.inf, drop: FrameDrop | None = None) -> Frame:
         """Render one frame of `view`, and return it when it is complete.

@@ -15,6 +15,7 @@ import numpy as np
 
 from voxrt.board.device import Counters, Frame, Identity
 from voxrt.board.errors import DeviceError, FrameDropped, TooSlow
+from voxrt.board.patch_writes import write_patch
 from voxrt.board.register_writes import (
     PROBLEMS,
     camera_writes,
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     from voxrt.board.frame_drop import FrameDrop
     from voxrt.board.register_writes import Writes
     from voxrt.board.view import View
+    from voxrt.octree import Patch
 
 _MINOR = 3
 _IDENTITY = int.from_bytes(b"VXRT", "big")
@@ -212,6 +214,10 @@ class RegisterDevice:
         # The hardware latches depth and root together when a frame starts. None starts between these two writes.
         self.hold()
         self._registers.write(register_writes("depth", depth=depth) + register_writes("root", address=root))
+
+    def apply_patch(self, patch: Patch, depth: int) -> None:
+        """Write what an edit changed, and trace its root from the next frame on."""
+        write_patch(self, patch, depth)
 
     def frame(self, view: View, seconds: float = math.inf, drop: FrameDrop | None = None) -> Frame:
         """Start a frame, wait for the frame-done bit, and return the frame."""

@@ -44,6 +44,10 @@ class Scene:
         The words that are the roots of the frames of an animation; (0,) for a still scene.
     period
         Seconds from one frame of an animation to the next; None where that is not known.
+    warnings
+        What its file lost on the way here, a line each.
+    names
+        Names of the materials by id, as far as they are known.
     """
 
     name: str
@@ -55,6 +59,8 @@ class Scene:
     lighting: Lighting | None = None
     roots: tuple[int, ...] = (0,)
     period: float | None = None
+    warnings: tuple[str, ...] = ()
+    names: tuple[str, ...] = ()
 
     @property
     def background(self) -> Triple:

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import zlib
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from voxrt.board.errors import DeviceError, Refused
+from voxrt.board.patch_writes import check_kept
 from voxrt.board.scene import check_memory
 from voxrt.octree.words import EMPTY, move_pointers
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from numpy.typing import NDArray
+
     from voxrt.board.device import Device
     from voxrt.board.scene import Scene
+    from voxrt.octree import World
 
 _BURST = 4096  # words per step, at least
 _STEPS = 256  # to write a scene, at most: a frame may come between two
@@ -63,13 +68,18 @@ class SceneMemory:
 
     def __init__(self, device: Device, loaded: LoadedScene | None = None) -> None:
         self._device = device
-        self._loaded = loaded.scene if loaded else None
+        self._scene = loaded.scene if loaded else None
         self._base = loaded.base if loaded else 0
+        self._world: World | None = None  # whose image the memory holds
+        self._root = 0  # of the world: what frames show
+        self._in_doubt = False  # whether the memory holds the last patch
 
     @property
     def loaded(self) -> Scene | None:
-        """The scene that frames show."""
-        return self._loaded
+        """The scene that frames show; an edited one with its free blocks."""
+        if self._world is None or self._scene is None:
+            return self._scene
+        return replace(self._scene, words=self._world.image, roots=(self._root,))
 
     def check(self, scene: Scene) -> None:
         """Refuse a scene that the device cannot hold, or that is malformed; nothing is written.
@@ -79,6 +89,10 @@ class SceneMemory:
         Refused
             The scene has too many words or levels, or its words are no octree.
         """
+        self._check_size(scene)
+        check_memory(scene.words, scene.depth, scene.roots)
+
+    def _check_size(self, scene: Scene) -> None:
         identity = self._device.identity
         if len(scene.words) > identity.capacity:
             raise Refused(
@@ -90,7 +104,6 @@ class SceneMemory:
                 f"{scene.name} has {scene.depth} levels and {identity.name} takes {identity.depth}; "
                 "build it with a smaller depth"
             )
-        check_memory(scene.words, scene.depth, scene.roots)
 
     def select_frame(self, number: int) -> None:
         """Show a frame of the loaded scene's animation from the next frame of the device on: one register write.
@@ -100,11 +113,11 @@ class SceneMemory:
         Refused
             It has no such frame.
         """
-        frames = 1 if self._loaded is None else len(self._loaded.roots)
+        frames = 1 if self._scene is None else len(self._scene.roots)
         if not 0 <= number < frames:
             raise Refused(f"there is no frame {number}; the scene has {frames}, counted from 0")
-        if self._loaded is not None:
-            self._select_root(self._loaded, self._base, number)
+        if self._world is None and self._scene is not None:  # an edited scene has one frame, which is selected
+            self._select_root(self._scene, self._base, number)
 
     def load(self, scene: Scene, progress: Progress) -> None:
         """Write a scene, read it back, and show it from the next frame on.
@@ -144,18 +157,94 @@ class SceneMemory:
             yield
         self._switch(scene, base, try_scene)
 
+    def begin_edits(self, world: World, scene: Scene) -> None:
+        """Give the memory all words of a world, from word 0 on; from then on :meth:`show_edits` writes what changes.
+
+        What the memory holds is compared with the world: it is written, while the device is held, only where it
+        differs. So a host that connects again goes on with its world.
+
+        Parameters
+        ----------
+        world
+            Nobody else commits it or releases its roots. Its newest live root is shown.
+        scene
+            Its name, materials and depth; its words are not used.
+
+        Raises
+        ------
+        Refused
+            The device cannot hold the world; nothing was written.
+        DeviceError
+            The memory did not keep what was written. The present scene stays.
+        """
+        root = world.live_roots[-1]
+        edited = replace(scene, words=world.image, roots=(root,))
+        self._check_size(edited)
+        if self._holds(world, edited.words):
+            self._select(edited, 0)
+        else:
+            self._overwrite(edited, _ignore, None)
+        self._scene, self._base, self._world, self._root, self._in_doubt = scene, 0, world, root, False
+
+    def show_edits(self, scene: Scene) -> int:
+        """Show the world that was begun, as it is now, from the next frame on; return the blocks that were written.
+
+        Frames go on meanwhile. Roots that no frame reads any more are released. After an error the next call does what
+        :meth:`begin_edits` does.
+
+        Parameters
+        ----------
+        scene
+            As for :meth:`begin_edits`.
+
+        Raises
+        ------
+        Refused, DeviceError
+            As :meth:`begin_edits`; frames show what they did before.
+        DoesNotFitError
+            The world has no room for the word of the root. Nothing was written.
+        """
+        world, before = self._world, self._scene
+        if world is None or before is None:
+            raise Refused("no world was begun; begin its edits first")
+        older, patch = world.live_roots, world.commit()
+        if self._in_doubt:
+            self.begin_edits(world, scene)
+        else:
+            if patch.end > self._device.identity.capacity:
+                raise Refused(f"the edit leads beyond the {self._device.identity.capacity} words of the device")
+            self._in_doubt = True
+            if not np.array_equal(scene.colours, before.colours) or not np.array_equal(scene.mirrors, before.mirrors):
+                self._device.write_materials(scene.colours, scene.mirrors)
+            self._device.apply_patch(patch, scene.depth)
+            self._scene, self._root, self._in_doubt = scene, patch.root, False
+        for root in older:
+            if root != patch.root:
+                world.release(root)
+        return len(patch.addresses)
+
+    def _holds(self, world: World, image: NDArray[np.uint32]) -> bool:
+        """Whether the memory has the live words of a world from word 0 on: as this object knows, or as it reads."""
+        loaded = self._scene if self._world is None and self._base == 0 else None
+        if loaded is not None and np.array_equal(loaded.words, image):
+            return True
+        live = np.append(world.written[:, None] + np.arange(8, dtype=np.uint32), np.uint32(world.live_roots[-1]))
+        found = self._device.read_memory(0, len(image))
+        return zlib.crc32(found[live].tobytes()) == zlib.crc32(image[live].tobytes())
+
     def _free_base(self, count: int) -> int | None:
         """Find where `count` words fit beside the loaded scene: before it, or at the end of the memory.
 
         Scenes stand at either end of the memory, so the free part is in one piece: two scenes fit whenever their sizes
         allow it.
         """
-        if self._loaded is None:
+        loaded = self.loaded
+        if loaded is None:
             return None
         if count <= self._base:
             return 0
         last = (self._device.identity.capacity - count) // 8 * 8
-        return last if last >= self._base + len(self._loaded.words) else None
+        return last if last >= self._base + len(loaded.words) else None
 
     def _transfer(self, scene: Scene, base: int, progress: Progress) -> Iterator[None]:
         words = move_pointers(scene.words, base)
@@ -167,14 +256,7 @@ class SceneMemory:
         for start in range(0, len(words), burst):
             progress("verify", start, len(words))
             expected = words[start : start + burst]
-            found = self._device.read_memory(base + start, len(expected))
-            differing = np.flatnonzero(found != expected)
-            if len(differing):
-                first = int(differing[0])
-                raise DeviceError(
-                    f"word 0x{base + start + first:X} reads 0x{int(found[first]):08X} where "
-                    f"0x{int(expected[first]):08X} was written; upload again, and check the board if that repeats"
-                )
+            check_kept(base + start, expected, self._device.read_memory(base + start, len(expected)))
             yield
         progress("verify", len(words), len(words))
 
@@ -186,7 +268,7 @@ class SceneMemory:
         except BaseException as error:
             self._restore(error, overwritten=False)
             raise
-        self._loaded, self._base = scene, base
+        self._scene, self._base, self._world = scene, base, None
 
     def _overwrite(self, scene: Scene, progress: Progress, try_scene: Callable[[], None] | None) -> None:
         try:
@@ -199,7 +281,7 @@ class SceneMemory:
         except BaseException as error:
             self._restore(error, overwritten=True)
             raise
-        self._loaded, self._base = scene, 0
+        self._scene, self._base, self._world = scene, 0, None
 
     def _select(self, scene: Scene, base: int) -> None:
         self._device.write_materials(scene.colours, scene.mirrors)
@@ -210,13 +292,18 @@ class SceneMemory:
 
     def _restore(self, error: BaseException, *, overwritten: bool) -> None:
         try:
-            if self._loaded is None:
+            loaded = self.loaded
+            if loaded is None:
                 self._device.write_memory(0, np.array([EMPTY], dtype=np.uint32))
                 self._device.select_scene(0, 1)
                 return
             if overwritten:
-                for _ in self._transfer(self._loaded, self._base, lambda _stage, _done, _total: None):
+                for _ in self._transfer(loaded, self._base, _ignore):
                     pass
-            self._select(self._loaded, self._base)
+            self._select(loaded, self._base)
         except DeviceError as second:
             raise DeviceError(f"{error}; and the present scene could not be restored: {second}") from error
+
+
+def _ignore(_stage: str, _done: int, _total: int) -> None:
+    pass

@@ -33,6 +33,7 @@ def main() -> None:
     compare()
     draw_gallery("physics_colliders", "rounding")
     draw_gallery("textured_gltf", "painted")
+    film_the_mine()
 
 
 def show_octants() -> None:
@@ -79,6 +80,12 @@ def draw_gallery(example: str, picture: str) -> None:
     """Draw the last figure of an example of the gallery."""
     runpy.run_path(str(EXAMPLES / "gallery" / f"{example}.py"), run_name="__main__")
     plt.savefig(PICTURES / f"{picture}.png", dpi=100)
+
+
+def film_the_mine() -> None:
+    """Leave the film of the gallery's mine that is dug."""
+    known = runpy.run_path(str(EXAMPLES / "gallery" / "dig.py"), run_name="__main__")
+    voxrt.save_animation(known["pictures"], PICTURES / "dig.gif", period=0.08)
 
 
 if __name__ == "__main__":

@@ -45,6 +45,11 @@ class Patch:
         """Words that it writes."""
         return self.blocks.size + 1
 
+    @property
+    def end(self) -> int:
+        """The address behind the last word that it writes."""
+        return max(self.root + 1, int(self.addresses[-1]) + 8 if len(self.addresses) else 0)
+
     def apply(self, words: NDArray[np.uint32]) -> NDArray[np.uint32]:
         """Return a memory with the patch; `words`, uint32, shape (N,), stay as they are.
 
@@ -61,8 +66,7 @@ class Patch:
         >>> len(before.words), patch, len(patch.apply(before.words))
         (17, <Patch: 2 blocks, root at word 33>, 41)
         """
-        end = max(self.root + 1, int(self.addresses[-1]) + 8 if len(self.addresses) else 0)
-        blocks = -(-(max(end, len(words)) - 1) // 8)
+        blocks = -(-(max(self.end, len(words)) - 1) // 8)
         patched = np.full(1 + 8 * blocks, EMPTY, np.uint32)
         patched[: len(words)] = words
         patched[self.addresses[:, None] + np.arange(8, dtype=np.uint32)] = self.blocks

@@ -389,6 +389,14 @@ class World:
         """
         return self._native.image()
 
+    @property
+    def written(self) -> NDArray[np.uint32]:
+        """The addresses of the blocks in use that commits have written: uint32, shape (N,), ascending.
+
+        A memory that got every patch has these blocks as :attr:`image` has them. It may differ in all others.
+        """
+        return self._native.written()
+
     def figures(self) -> WorldFigures:
         """Count the blocks by their use. Linear in the blocks."""
         return WorldFigures(*self._native.figures())

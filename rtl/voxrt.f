@@ -44,6 +44,7 @@ rays/voxrt_ray_generator.sv
 rays/voxrt_ray_setup.sv
 rays/voxrt_rays.sv
 rays/voxrt_scan.sv
+rays/voxrt_serial_ray_setup.sv
 rays/voxrt_strip_generator.sv
 rays/voxrt_strip_place.sv
 shading/voxrt_brightness.sv
@@ -52,6 +53,7 @@ shading/voxrt_light_direction.sv
 shading/voxrt_merge.sv
 shading/voxrt_pixel_packer.sv
 shading/voxrt_pixels.sv
+shading/voxrt_serial_shader.sv
 shading/voxrt_shader.sv
 shading/voxrt_strip_buffer.sv
 voxrt_core.sv

@@ -27,8 +27,8 @@ module voxrt_core
   // Features of the shader, 0 = not built in: a point light with shadows, mirrors.
   parameter bit          Light        = 1'b0,
   parameter bit          Mirrors      = 1'b0,
-  // Clocks per ray and per pixel: 1; or 4, at which the setup of rays and the shader share their multipliers. 4 needs a
-  // core without Light, Mirrors and Lod.
+  // Clocks per ray and per pixel: 1; 4, at which the setup of rays and the shader share their multipliers; or 8, at which
+  // they also take one axis after the other. 4 and 8 need a core without Light, Mirrors and Lod.
   parameter int unsigned RayClocks    = 1,
   // Level of detail, 0 = not built in; not with Light or Mirrors.
   parameter bit          Lod          = 1'b0,
@@ -102,8 +102,8 @@ module voxrt_core
   if (MaxDepth < 2 || MaxDepth > DepthLimit) $error("voxrt_core: MaxDepth must be 2 to 16 levels");
   if (PositionBits < 6 || PositionBits > PositionLimit) $error("voxrt_core: PositionBits must be 6 to 32 bits");
   if (BlockBits < 5 || BlockBits > 24) $error("voxrt_core: BlockBits must be 5 to 24 bits");
-  if (RayClocks != 1 && (RayClocks != 4 || Light || Mirrors || Lod))
-    $error("voxrt_core: RayClocks must be 1, or 4 without Light, Mirrors and Lod");
+  if (RayClocks != 1 && ((RayClocks != 4 && RayClocks != 8) || Light || Mirrors || Lod))
+    $error("voxrt_core: RayClocks must be 1, or 4 or 8 without Light, Mirrors and Lod");
   if (MemoryForm > CachedForm) $error("voxrt_core: MemoryForm must be 0, 1 or 2");
   if (MemoryForm == CachedForm && (L1SetBits < 1 || L1SetBits >= BlockBits || L2SetBits < 1 || L2SetBits >= BlockBits))
     $error("voxrt_core: L1SetBits and L2SetBits must be 1 bit or more, and less than BlockBits");

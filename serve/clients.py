@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from voxrt.serve.server_options import Limits
 
 _BACKLOG_LIMIT = 256  # answers that a client may leave unread
+_PARTS_LIMIT = 4  # parts of files that a client may leave unread
 _FRAGMENT = 1 << 18  # bytes; a connection copies and buffers no more of a frame
 _STATE_SECONDS = 0.05  # between two states
 
@@ -59,7 +60,7 @@ class Client:
         """What is being sent."""
         self._on_ready = on_ready
         self._state_text = state_text
-        self._answers: deque[str] = deque()
+        self._answers: deque[str | bytes] = deque()
         self._state_changed = False
         self._frame: bytes | None = None
         self._work = asyncio.Event()
@@ -90,6 +91,14 @@ class Client:
         else:
             self._answers.append(json.dumps(message, separators=(",", ":")))
         self._work.set()
+
+    def queue_part(self, part: bytes) -> bool:
+        """Send a part of a file after all queued answers; False where too many are unread."""
+        if sum(isinstance(answer, bytes) for answer in self._answers) >= _PARTS_LIMIT:
+            return False
+        self._answers.append(part)
+        self._work.set()
+        return True
 
     def queue_state(self) -> None:
         """Send the state of the session, as it is when its turn comes."""

@@ -18,7 +18,15 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import InvalidStatus, WebSocketException
 
 from voxrt.board.errors import Refused
-from voxrt.serve.packets import CHUNK_LIMIT, PROTOCOL_VERSION, Chunk, pack_chunk, unpack_frame
+from voxrt.serve.packets import (
+    CHUNK_LIMIT,
+    CHUNK_MAGIC,
+    PROTOCOL_VERSION,
+    Chunk,
+    pack_chunk,
+    unpack_chunk,
+    unpack_frame,
+)
 from voxrt.serve.shown_text import shown_line
 
 if TYPE_CHECKING:
@@ -55,6 +63,7 @@ class FrameClient:
         self._connection = connection
         self._requests = 0
         self._frame: FramePacket | None = None
+        self._part: Chunk | None = None  # of files that are saved
 
     async def send(self, kind: str, **fields: object) -> int:
         """Send a request without waiting for its answer; return its number.
@@ -115,6 +124,57 @@ class FrameClient:
         work = self._upload(files, progress, check_only=check_only)
         return await _in_time(work, _UPLOAD_SECONDS, "does not load the scene")
 
+    async def edit(self, operation: Mapping[str, object]) -> dict[str, int]:
+        """Edit the scene by an operation of ``voxrt edit`` (docs/edit.md), such as ``{"op": "undo"}``.
+
+        Returns
+        -------
+        dict
+            ``number`` of edits of the scene, ``undo`` and ``redo`` steps that there are, ``blocks`` that were written,
+            and ``materials``, the number of entries of the material table.
+
+        Raises
+        ------
+        Refused
+            The server refused the edit, which changed nothing; or it does not answer, or closed the connection.
+        """
+        figures = (await self.request("edit", operation=operation)).get("edit")
+        if not isinstance(figures, dict):
+            raise _not_understood()
+        return {name: _whole(figures, name) for name in ("number", "undo", "redo", "blocks", "materials")}
+
+    async def save(self, suffix: str = ".mem") -> dict[str, bytes]:
+        """Fetch the scene as it is now: the files of a ``.mem``, ``.blob`` or ``.vox`` by their names.
+
+        Raises
+        ------
+        Refused
+            The server refused, does not answer, or closed the connection; or a file was damaged.
+        """
+        answer = await _in_time(self.request("save", suffix=suffix), _UPLOAD_SECONDS, "does not save the scene")
+        files, number, data = answer.get("files"), self._requests, bytearray()
+        if not isinstance(files, list) or not all(isinstance(file, dict) for file in files):
+            raise _not_understood()
+        size = sum(_whole(file, "size") for file in files)
+        while len(data) < size:
+            request = await self.send("part", offset=len(data))
+            self._part = None
+            while self._part is None:
+                message = await _in_time(self._receive(), _ANSWER_SECONDS, "does not answer")
+                if message is not None and message.get("request") == request:
+                    raise Refused(shown_line(message.get("problem")))
+            if (self._part.upload, self._part.offset) != (number, len(data)):
+                raise _not_understood()
+            data += self._part.data
+        saved, at = {}, 0
+        for file in files:
+            name, end = shown_line(file.get("name")), at + _whole(file, "size")
+            saved[name] = bytes(data[at:end])
+            if zlib.crc32(saved[name]) != _whole(file, "crc32"):
+                raise Refused(f"{name} was damaged in transit (CRC-32); save it again")
+            at = end
+        return saved
+
     async def _upload(self, files: Mapping[str, bytes], progress: Progress, *, check_only: bool) -> dict[str, Any]:
         announced = [{"name": name, "size": len(data), "crc32": zlib.crc32(data)} for name, data in files.items()]
         ready = await self.request("upload", files=announced, check_only=check_only)
@@ -158,6 +218,9 @@ class FrameClient:
             message = await self._connection.recv()
         except (WebSocketException, OSError, UnicodeDecodeError) as error:
             raise _closed(error) from None
+        if isinstance(message, bytes) and message.startswith(CHUNK_MAGIC):
+            self._part = unpack_chunk(message)
+            return None
         if isinstance(message, bytes):
             self._frame = unpack_frame(message)
             return None

@@ -13,15 +13,17 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
+from voxrt.board.edited_scene import rom_of, with_materials
 from voxrt.board.errors import DeviceError, FrameDropped, Refused, TooSlow
 from voxrt.board.frame_drop import FrameDrop
 from voxrt.board.scene import Scene
 from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.view import View, frame_world, refit
 from voxrt.board.view_check import check_view
-from voxrt.octree import Octree, solid_bounds
+from voxrt.octree import Octree, World, solid_bounds
 from voxrt.octree.words import EMPTY
 from voxrt.serve.packets import FramePacket
+from voxrt.voxelize import DoesNotFitError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -38,7 +40,7 @@ DEFAULT_SIZE = (640, 480)
 """Columns and rows of the frames until a client changes the size. Cameras of scenes are made for it."""
 
 _PATIENCE = 60.0  # seconds
-_SMALLER = 4  # a device whose frames may take longer begins with frames that have this part of columns and rows
+_SMALLER = 4  # what may take longer begins with frames that have this part of columns and rows
 
 EMPTY_SCENE = Scene(
     "nothing",
@@ -77,6 +79,8 @@ class Renderer:
         size = _first_size(device.identity)
         self.device = device
         self.scene = EMPTY_SCENE
+        self.world: World | None = None  # the scene, once it is edited
+        self._edits = 0
         self.scene_number = 0
         self.crc32 = EMPTY_SCENE.crc32
         self.bounds: tuple[Triple, Triple] | None = None
@@ -124,7 +128,7 @@ class Renderer:
     def check_scene(self, scene: Scene) -> None:
         """Refuse a scene that the device cannot hold or render; nothing is written."""
         self._memory.check(scene)
-        check_view(self._view_of(scene), self.device.identity)
+        check_view(self._view_of(scene, self.view.size), self.device.identity)
 
     async def load(self, scene: Scene, progress: Progress, check: Callable[[], None] = _ignore) -> None:
         """Load a scene while frames of the present one are rendered, and show it from the next frame on.
@@ -141,8 +145,8 @@ class Renderer:
         Raises
         ------
         Refused
-            The device cannot hold or render it, or its first frame exceeds the time limit of frames. The present scene
-            stays.
+            The device cannot hold or render it, or its first frame exceeds the limit of frames, also where it is
+            smaller. The present scene stays.
         DeviceError
             The device did not keep it; the present scene stays.
         """
@@ -165,7 +169,63 @@ class Renderer:
                         self.scene, self.crc32, self.bounds = scene, scene.crc32, bounds
                         self.view = self._first_frame[0]
                         self.scene_number += 1
+                        self.world, self._edits = None, 0
         self._changed.set()
+
+    async def edit(self, change: Callable[[World], None], client: int, request: int) -> dict[str, int]:
+        """Edit the scene; frames then carry the numbers `client` and `request`. Return the figures of the edit.
+
+        Raises
+        ------
+        Refused
+            The scene is an animation, `change` refuses, or the device has no room for the result.
+        DeviceError
+            The device did not keep what was written. Frames show the voxels before; the next edit shows both.
+        """
+        number = self.scene_number
+        async with self._loading:
+            if self.scene_number != number:
+                raise Refused("another scene was loaded meanwhile; look at it, and edit it then")
+            world = await self.aside(partial(self._changed_world, change))
+            async with self._device_lock:
+                written = await self._on_device(partial(self._show_world, world))
+        self._newest_request = (client, request)
+        self._changed.set()
+        self._edits += 1
+        return {**self.edits, "blocks": written, "materials": len(world.materials)}
+
+    @property
+    def edits(self) -> dict[str, int]:
+        """The edits of the scene, those that can be undone, and those that can be done again."""
+        undo, redo = (0, 0) if self.world is None else self.world.steps
+        return {"number": self._edits, "undo": undo, "redo": redo}
+
+    def still_scene(self) -> Scene:
+        """Return the scene with its octree as it is now; Refused if it is an animation. It may take seconds."""
+        if len(self.scene.roots) > 1:
+            raise Refused(f"{self.scene.name} is an animation, whose frames share blocks; load a scene of one frame")
+        world = self.world
+        return self.scene if world is None else replace(self.scene, words=world.rom().octree.words)
+
+    def _changed_world(self, change: Callable[[World], None]) -> World:
+        world = self.world
+        if world is None:
+            world = World(rom_of(self.still_scene()), words=self.device.identity.capacity)
+        change(world)
+        return world
+
+    def _show_world(self, world: World) -> int:
+        scene = with_materials(self.scene, world.materials)
+        try:
+            if self.world is None:
+                self._memory.begin_edits(world, scene)
+            written = self._memory.show_edits(scene)
+        except DoesNotFitError as error:
+            world.undo()
+            raise Refused(str(error)) from error
+        self._shown_frame = 0
+        self.scene, self.world = scene, world
+        return written
 
     async def aside(self, call: Callable[[], Result]) -> Result:
         """Call what looks at a scene, in a thread beside that of the device; one at a time, each takes a moment."""
@@ -257,9 +317,15 @@ class Renderer:
 
     def _render_first(self, scene: Scene, progress: Progress) -> None:
         progress("render", 0, 1)
-        view = self._view_of(scene)
         self._shown_frame = 0  # of the scene that was selected just now
-        self._first_frame = view, self._render(view)
+        size = self.view.size
+        view = self._view_of(scene, size)
+        try:
+            frame = self._render(view)
+        except TooSlow:
+            view = self._view_of(scene, _smaller_size(size, self.device.identity.width_step))
+            frame = self._render(view)
+        self._first_frame = view, frame
 
     async def _on_device(self, call: Callable[[], Result]) -> Result:
         # A call of the device goes on when its caller is cancelled, so it is shielded. The next call waits in the same
@@ -268,10 +334,9 @@ class Renderer:
         work.add_done_callback(_retrieve_error)
         return await asyncio.shield(work)
 
-    def _view_of(self, scene: Scene) -> View:
-        size = self.view.size
+    def _view_of(self, scene: Scene, size: tuple[int, int]) -> View:
         camera = refit(scene.camera, DEFAULT_SIZE, size) if scene.camera else frame_world(scene.depth, size)
-        view = replace(self.view, camera=camera, background=scene.background, frame=0)
+        view = replace(self.view, camera=camera, size=size, background=scene.background, frame=0)
         lighting = scene.lighting
         if lighting is None:
             side, farthest = 16 << scene.depth, self.device.identity.position_limit - 1
@@ -292,6 +357,10 @@ def _first_size(identity: Identity) -> tuple[int, int]:
     part = _SMALLER if identity.frame_seconds(DEFAULT_SIZE) > _PATIENCE else 1
     columns, rows = (min(side // part, most) for side, most in zip(DEFAULT_SIZE, identity.size, strict=True))
     return columns, rows
+
+
+def _smaller_size(size: tuple[int, int], width_step: int) -> tuple[int, int]:
+    return max(size[0] // (_SMALLER * width_step), 1) * width_step, max(size[1] // _SMALLER, 1)
 
 
 def _retrieve_error(work: asyncio.Future[Any]) -> None:

@@ -13,15 +13,18 @@ import numpy as np
 from voxrt.board.errors import DeviceError, Refused
 from voxrt.octree import Octree, frame_octree
 from voxrt.octree.camera import POSITION_UNITS
-from voxrt.serve.packets import unpack_chunk
+from voxrt.serve.packets import pack_chunk, unpack_chunk
 from voxrt.serve.requests import (
     CancelUpload,
     CastRay,
     ChangeView,
+    EditScene,
     LoadScene,
     ReadCounters,
     ReadRegisters,
+    ReadSaved,
     ReleaseControl,
+    SaveScene,
     StartUpload,
     TakeControl,
     read_request,
@@ -29,12 +32,14 @@ from voxrt.serve.requests import (
 )
 from voxrt.serve.shown_text import shown_line
 from voxrt.sim import FACE_NONE, cast_rays
+from voxrt.sim.picking import pick
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Coroutine
 
     from voxrt.board.scene import Scene
     from voxrt.board.scene_memory import Progress
+    from voxrt.octree import World
     from voxrt.serve.clients import Client
     from voxrt.serve.requests import Request
     from voxrt.serve.session import Session
@@ -98,28 +103,47 @@ class RequestHandler:
                 session.clients.queue_state()
             case ReadRegisters():
                 answer["registers"] = dict(await session.renderer.read_registers())
-            case CastRay():
-                self._require_control()
-                renderer = session.renderer
-                cast = partial(_cast_ray, renderer.scene, renderer.view.frame, request)
-                answer["hit"] = await renderer.aside(cast)
             case ReadCounters():
                 answer["counters"] = session.counters()
             case CancelUpload():
                 session.cancel(client.number)
-            case ChangeView():
+            case _:
                 self._require_control()
+                answer |= await self._handle_controller(request)
+                if not answer["type"]:
+                    return
+        client.queue_answer(answer)
+
+    async def _handle_controller(self, request: Request) -> dict[str, Any]:
+        """Do what only the client that has control may request; return the answer's fields, `type` empty for none."""
+        session, client, number = self._session, self._client, request.request
+        answer: dict[str, Any] = {}
+        match request:
+            case CastRay():
+                renderer = session.renderer
+                if renderer.world is None:
+                    cast = partial(_cast_ray, renderer.scene, renderer.view.frame, request)
+                else:
+                    cast = partial(_pick_voxel, renderer.world, request)
+                answer["hit"] = await renderer.aside(cast)
+            case ChangeView():
                 session.renderer.change_view(request, client.number, number)
                 session.clients.queue_state()
+            case EditScene():
+                answer["edit"] = await session.edit(client.number, number, request.operation)
+            case SaveScene():
+                answer["files"] = await session.save(client.number, number, request.suffix)
+            case ReadSaved():
+                if not client.queue_part(pack_chunk(session.saved_part(request.offset))):
+                    raise Refused("too many parts are unread; ask for fewer at a time")
+                answer["type"] = ""
             case LoadScene():
-                self._require_control()
                 self._start_task(self._load(number, partial(session.load_named, client.number, request.scene)))
-                return
+                answer["type"] = ""
             case StartUpload():
-                self._require_control()
                 session.start_upload(number, request)
-                answer = {"type": "ready", "request": number, "upload": number}
-        client.queue_answer(answer)
+                answer |= {"type": "ready", "upload": number}
+        return answer
 
     def _upload_number(self) -> int:
         session = self._session
@@ -180,6 +204,23 @@ def _cast_ray(scene: Scene, frame: int, ray: CastRay) -> dict[str, Any] | None:
     point = origin + hits.parameter[0] * np.array(ray.direction)
     face = None if starts_inside else int(hits.face[0])
     return {"voxel": hits.voxel[0].tolist(), "material": int(hits.material[0]), "face": face, "point": point.tolist()}
+
+
+def _pick_voxel(world: World, ray: CastRay) -> dict[str, Any] | None:
+    """Do what :func:`_cast_ray` does, in a world that is edited."""
+    origin, still = np.array(ray.origin) / POSITION_UNITS, not any(ray.direction)
+    try:
+        found = pick(world, origin, (1, 0, 0) if still else ray.direction)
+    except ValueError as error:
+        raise Refused(str(error)) from error
+    if found is None or (still and found.beside is not None):
+        return None
+    face, point = None, origin
+    if found.beside is not None:
+        face = next(axis for axis in range(3) if found.beside[axis] != found.voxel[axis])
+        plane = max(found.beside[face], found.voxel[face])
+        point = origin + (plane - origin[face]) / ray.direction[face] * np.array(ray.direction)
+    return {"voxel": found.voxel, "material": found.material, "face": face, "point": point.tolist()}
 
 
 class _ReportedProgress:

@@ -10,6 +10,7 @@ import msgspec
 from voxrt.board.errors import Refused
 from voxrt.board.view import Camera, Lighting, Shading, View
 from voxrt.octree.camera import DIRECTION_LIMIT
+from voxrt.serve.edits import EditOperation  # noqa: TC001 - msgspec resolves the annotations of this module
 
 _NAME = 200
 _BOUNCES = 4  # of mirrors that are turned on without a number
@@ -134,6 +135,24 @@ class CastRay(Request, frozen=True, tag="ray"):
     direction: tuple[_Component, _Component, _Component]
 
 
+class EditScene(Request, frozen=True, tag="edit"):
+    """Edit the scene that is shown."""
+
+    operation: EditOperation
+
+
+class SaveScene(Request, frozen=True, tag="save"):
+    """Make files of the scene that is shown."""
+
+    suffix: Literal[".mem", ".blob", ".vox"]
+
+
+class ReadSaved(Request, frozen=True, tag="part"):
+    """Get a part of the files that were made last, from a byte on."""
+
+    offset: _Number
+
+
 class _Numbered(msgspec.Struct):
     request: _Number = 0
 
@@ -146,6 +165,9 @@ _Any: TypeAlias = (
     | StartUpload
     | CancelUpload
     | CastRay
+    | EditScene
+    | SaveScene
+    | ReadSaved
     | ReadRegisters
     | ReadCounters
 )

@@ -18,7 +18,7 @@ import msgspec
 
 from voxrt.board.errors import Refused
 from voxrt.octree.camera import Camera, Lighting  # noqa: TC001 - msgspec resolves the annotations of this module
-from voxrt.serve.shown_text import shown_line
+from voxrt.serve.shown_text import shown_line, shown_warnings
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from voxrt.board.scene_memory import Progress
 
 _NICE = 10
+_NAME = 100  # characters of a material's name
 
 
 class Stage(msgspec.Struct, frozen=True, tag=True):
@@ -53,6 +54,8 @@ class Described(msgspec.Struct, frozen=True, tag=True):
     lighting: Lighting | None
     roots: tuple[int, ...]
     period: float | None
+    warnings: tuple[str, ...]
+    names: tuple[str, ...] = ()
 
 
 Message: TypeAlias = Stage | Problem | Described
@@ -91,10 +94,19 @@ def run_child(read: Callable[[Sequence[Path], Progress], Scene], files: Sequence
     except Exception as error:  # noqa: BLE001 - whatever it is, the client gets an answer
         refuse(f"the files cannot be read: {type(error).__name__}: {error}; please report this")
     else:
-        count, roots = len(scene.words), scene.roots
         _write(
             out,
-            Described(shown_line(scene.name), scene.depth, count, scene.camera, scene.lighting, roots, scene.period),
+            Described(
+                shown_line(scene.name),
+                scene.depth,
+                len(scene.words),
+                scene.camera,
+                scene.lighting,
+                scene.roots,
+                scene.period,
+                shown_warnings(scene.warnings),
+                tuple(shown_line(name, _NAME) for name in scene.names),
+            ),
         )
         for array, kind in ((scene.colours, "u1"), (scene.mirrors, "u1"), (scene.words, "<u4")):
             out.write(array.astype(kind).tobytes())

@@ -21,7 +21,7 @@ import numpy as np
 from voxrt.board.errors import Refused
 from voxrt.board.scene import Scene
 from voxrt.serve.scene_child import Described, Message, Problem, Stage
-from voxrt.serve.shown_text import shown_line
+from voxrt.serve.shown_text import shown_line, shown_warnings
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -172,4 +172,6 @@ async def _receive_scene(out: asyncio.StreamReader, described: Described) -> Sce
         at += len(part)
     words = np.frombuffer(data, dtype="<u4").astype(np.uint32, copy=False)
     name, camera, lighting = shown_line(described.name), described.camera, described.lighting
-    return Scene(name, described.depth, words, colours, mirrors, camera, lighting, described.roots, described.period)
+    roots, period, warnings = described.roots, described.period, shown_warnings(described.warnings)
+    names = tuple(shown_line(one) for one in described.names[:256])
+    return Scene(name, described.depth, words, colours, mirrors, camera, lighting, roots, period, warnings, names)

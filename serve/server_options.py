@@ -28,6 +28,8 @@ class Limits:
         What is read of a connection's text messages, on average; a burst may have twice as many. The rest waits.
     fragments
         Fragments of a message.
+    edits_per_second
+        Edits of the scene, on average; a burst may have twice as many. Further ones are refused.
     handshake_seconds
         Time limit of a handshake.
     send_seconds, send_bytes_per_second
@@ -46,6 +48,7 @@ class Limits:
     bytes_per_second: float = 1 << 24
     text_bytes_per_second: float = 1 << 17
     fragments: int = 64
+    edits_per_second: float = 40
     handshake_seconds: float = 5
     send_seconds: float = 20
     send_bytes_per_second: float = 1 << 20

@@ -13,6 +13,7 @@ from voxrt.board.errors import Refused
 from voxrt.board.view import frame_world
 from voxrt.serve.clients import Clients
 from voxrt.serve.control_transfer import ControlTransfer
+from voxrt.serve.edits import EditRate, SavedScene, check_operation, run_operation
 from voxrt.serve.packets import CHUNK_LIMIT, PROTOCOL_VERSION
 from voxrt.serve.renderer import DEFAULT_SIZE, Renderer
 from voxrt.serve.scene_load import SceneLoad
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
     from voxrt.board.device import Device
     from voxrt.board.scene import Scene
     from voxrt.board.scene_memory import Progress
+    from voxrt.serve.edits import EditOperation
+    from voxrt.serve.packets import Chunk
     from voxrt.serve.requests import StartUpload
     from voxrt.serve.scene_library import SceneLibrary
     from voxrt.serve.server_options import Limits
@@ -53,6 +56,9 @@ class Session:
         self._library = library
         self._load: SceneLoad | None = None
         self._memory_bytes = memory_bytes(device.identity.capacity)
+        self._edit_rate = EditRate(limits.edits_per_second)
+        self._saved: SavedScene | None = None
+        self._saving = False
         self._started = time.monotonic()
 
     async def run(self) -> None:
@@ -111,6 +117,8 @@ class Session:
                 "size": DEFAULT_SIZE,
                 "frames": len(scene.roots),
                 "period": scene.period,
+                "warnings": scene.warnings,
+                "edits": renderer.edits,
             },
             "view": {
                 "camera": asdict(renderer.view.camera),
@@ -196,6 +204,50 @@ class Session:
         reader = self._library.scene_reader or self._library.reader
         return await self._load_scene(client, reader.read(paths, progress), progress, check_only=False)
 
+    async def edit(self, client: int, request: int, operation: EditOperation) -> dict[str, int]:
+        """Edit the scene, and return the figures of the edit.
+
+        Raises
+        ------
+        Refused
+            Edits come too fast, or this one is too large, or cannot be done; or the scene is an animation.
+        DeviceError
+            The device did not keep it.
+        """
+        self._edit_rate.check()
+        check_operation(operation)
+        figures = await self.renderer.edit(partial(run_operation, operation), client, request)
+        self.clients.queue_state()
+        return figures
+
+    async def save(self, client: int, number: int, suffix: str) -> list[dict[str, Any]]:
+        """Make files of the scene, and describe them; :meth:`saved_part` reads them.
+
+        Raises
+        ------
+        Refused
+            Another scene is being saved, or this one cannot be saved so.
+        """
+        if self._saving:
+            raise Refused("a scene is being saved; ask again when its files are there")
+        self._drop_saved()
+        self._saving = True
+        try:
+            saved = await asyncio.to_thread(lambda: SavedScene(number, self.renderer.still_scene(), suffix))
+        finally:
+            self._saving = False
+        if self.control.controller != client:
+            saved.close()
+            raise Refused("another viewer took control meanwhile; nothing was saved")
+        self._saved = saved
+        return saved.files
+
+    def saved_part(self, offset: int) -> Chunk:
+        """Read a part of the files that were saved last."""
+        if self._saved is None:
+            raise Refused("no scene was saved; save one first")
+        return self._saved.part(offset)
+
     def stop(self) -> None:
         """End the frame in progress; there are no further ones."""
         self.renderer.device.stop()
@@ -203,7 +255,13 @@ class Session:
     def close(self) -> None:
         """Close the device."""
         self.drop_upload()
+        self._drop_saved()
         self.renderer.close()
+
+    def _drop_saved(self) -> None:
+        if self._saved is not None:
+            self._saved.close()
+            self._saved = None
 
     async def _load_scene(
         self, client: int, made: Coroutine[Any, Any, Scene], progress: Progress, *, check_only: bool
@@ -225,5 +283,6 @@ class Session:
 
     def _drop_work_of(self, client: int) -> None:
         self.drop_upload()
+        self._drop_saved()
         if self._load is not None and self._load.client == client:
             self._load.cancel("another viewer took control meanwhile; the scene was not changed")

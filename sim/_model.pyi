@@ -1,6 +1,6 @@
 # The exact model, native; src/model/bindings/module.cpp documents it.
 from collections.abc import Sequence
-from typing import Literal, NamedTuple, TypeAlias
+from typing import Literal, NamedTuple, TypeAlias, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +31,10 @@ class Stop:
     def set(self) -> None: ...
 
 class Memory:
-    def __init__(self, words: NDArray[np.uint32], depth: int) -> None: ...
+    @overload
+    def __init__(self, words: NDArray[np.uint32], depth: int, root: int = 0) -> None: ...
+    @overload
+    def __init__(self, memory: Memory, depth: int, root: int) -> None: ...
     def render(
         self,
         materials: NDArray[np.uint8],

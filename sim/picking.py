@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from voxrt.octree import World
 from voxrt.octree.camera import DIRECTION_LIMIT, POSITION_UNITS
 from voxrt.octree.query import Corner  # noqa: TC001 - the manual resolves the annotations of this module
@@ -79,13 +81,25 @@ def pick(world: World, origin: ArrayLike, direction: ArrayLike) -> Picked | None
 
 def _registers(origin: ArrayLike, direction: ArrayLike) -> tuple[list[int], list[int]]:
     """Return a ray as the registers hold it. One that they hold as it stands needs no arrays, which take longer."""
-    places, steps = [POSITION_UNITS * one for one in vector("origin", origin)], vector("direction", direction)
-    plain = (
-        all(one.is_integer() for one in (*places, *steps))
-        and max(map(abs, places)) < 1 << 31
-        and 0 < max(map(abs, steps)) < DIRECTION_LIMIT
-    )
-    if plain:
-        return [int(one) for one in places], [int(one) for one in steps]
-    (place,), (step,) = register_rays(origin, direction)
-    return place.tolist(), step.tolist()
+    place, step = _whole(origin, POSITION_UNITS, 1 << 31), _whole(direction, 1, DIRECTION_LIMIT)
+    if place is not None and step is not None and any(step):
+        return place, step
+    (places,), (steps,) = register_rays(vector("origin", origin), vector("direction", direction))
+    return places.tolist(), steps.tolist()
+
+
+def _whole(value: object, scale: int, limit: int) -> list[int] | None:
+    """Return three numbers times `scale`, if they are whole and below `limit`; None for whatever else."""
+    if type(value) is np.ndarray:
+        value = value.tolist()
+    if not isinstance(value, list | tuple) or len(value) != 3:
+        return None
+    found = []
+    for one in value:
+        if type(one) is not float and type(one) is not int:
+            return None
+        scaled = scale * one
+        if not -limit < scaled < limit or scaled != (whole := int(scaled)):
+            return None
+        found.append(whole)
+    return found

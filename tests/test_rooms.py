@@ -52,7 +52,7 @@ INSIDE_SOURCES = {
 INCLUDED_AS = {"voxelize": "voxelize/src", "octree": "octree/src", "sim": "sim/src/model", "bake": "sim/src/bake"}
 """What stands between ``<voxrt/`` and the folder in the name of a header."""
 
-OUTSIDE = ("bench", "examples", "docs", "rtl", "tests")
+OUTSIDE = ("bench", "blender", "examples", "docs", "rtl", "tests")
 """Folders whose scripts import the rooms and each other. No room imports them, but for ``voxrt.rtl``."""
 
 

@@ -14,6 +14,7 @@ FOLDERS = {
     ".ci",
     ".github",
     "bench",
+    "blender",
     "board",
     "docs",
     "examples",

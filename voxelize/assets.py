@@ -25,6 +25,7 @@ UP_AXES: tuple[UpAxis, ...] = ("x", "y", "z")
 # building a small scene.
 _OF_GLTF = {"time", "animation", "variants", "allow_outside", "opaque_from"}
 _OF_USD = {"time", "variants", "allow_outside", "opaque_from"}
+_OF_BLENDER = {"time", "allow_outside", "opaque_from"}
 _LOADERS = {
     ".gltf": ("voxrt.voxelize.formats.gltf", "load_gltf", _OF_GLTF),
     ".glb": ("voxrt.voxelize.formats.gltf", "load_gltf", _OF_GLTF),
@@ -32,6 +33,7 @@ _LOADERS = {
     ".usda": ("voxrt.voxelize.formats.usd.isolated", "read_isolated", _OF_USD),
     ".usdc": ("voxrt.voxelize.formats.usd.isolated", "read_isolated", _OF_USD),
     ".usdz": ("voxrt.voxelize.formats.usd.isolated", "read_isolated", _OF_USD),
+    ".blend": ("voxrt.voxelize.formats.blend.isolated", "read_isolated", _OF_BLENDER),
     ".toml": ("voxrt.voxelize.authoring.scene_toml", "load_scene_toml", {"allow_outside", "opaque_from", "points"}),
     ".obj": ("voxrt.voxelize.formats.obj", "load_obj", {"up", "unit", "allow_outside", "opaque_from"}),
     ".stl": ("voxrt.voxelize.formats.stl.load", "load_stl", {"up", "unit"}),
@@ -88,14 +90,14 @@ def load(
     unit
         Metres per unit of the file, for the same formats; None for 1.
     time
-        Seconds into the animation, for formats with animations (glTF, USD); None for the pose at rest.
+        Seconds into the animation, for formats with animations (glTF, USD, Blender); None for the pose at rest.
     animation
         An animation's name or its index, counted from 0 (glTF); None for the first.
     variants
         The name of one material variant (glTF), or any number of ``/prim/path:set=variant`` (USD).
     opaque_from
-        Surfaces of lower opacity are left out, 0 … 1, for formats with opacity (glTF, OBJ, PLY, USD); None for 0.5. The
-        alpha cutoff or the opacity threshold that an author gave a material decides in its place.
+        Surfaces of lower opacity are left out, 0 … 1, for formats with opacity (glTF, OBJ, PLY, USD, Blender); None
+        for 0.5. The alpha cutoff or the opacity threshold that an author gave a material decides in its place.
     points
         How many points of a point cloud make a voxel solid, for formats with points (PLY, XYZ, LAS); None for 1.
     allow_outside

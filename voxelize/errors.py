@@ -53,10 +53,13 @@ class SceneWarning:
 
     Examples
     --------
-    >>> SceneWarning("default-material", "faces without a material got the default one", 12).count
-    12
+    >>> print(SceneWarning("default-material", "faces without a material got the default one", 12))
+    faces without a material got the default one (12 times)
     """
 
     kind: str
     message: str
     count: int = 1
+
+    def __str__(self) -> str:
+        return f"{self.message} ({self.count} times)" if self.count > 1 else self.message

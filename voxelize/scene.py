@@ -108,13 +108,17 @@ class Viewpoint:
     Attributes
     ----------
     eye, target
-        Metres, scene frame: the camera's position and the point in the middle of its picture.
+        Metres, scene frame: the camera's position and a point straight ahead, in the middle of a picture that is not
+        shifted.
     field_of_view
         Degrees from the picture's top to its bottom, between 0 and 180; None where the author does not say.
     up
         The direction that points up in the picture, scene frame, of any length; None for the scene's y axis.
     name
         The author's name for it; empty for none.
+    shift
+        How far the middle of the picture lies to the right of the point straight ahead, and above it, in heights of the
+        picture: the shift of an architect's lens.
 
     Raises
     ------
@@ -133,6 +137,7 @@ class Viewpoint:
     field_of_view: float | None = None
     up: tuple[float, float, float] | None = None
     name: str = ""
+    shift: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
         eye = arguments.vector("Viewpoint.eye", self.eye)
@@ -150,6 +155,8 @@ class Viewpoint:
                 raise ValueError("Viewpoint.up must have a direction, and is (0, 0, 0)")
             object.__setattr__(self, "up", up)
         object.__setattr__(self, "name", arguments.text("Viewpoint.name", self.name))
+        across, above = arguments.real_array("Viewpoint.shift", self.shift, (2,)).tolist()
+        object.__setattr__(self, "shift", (float(across), float(above)))
 
 
 @dataclass(frozen=True, slots=True)

@@ -40,12 +40,14 @@ _BLOCK_RAM = re.compile(rb"\xf6\x00\x00\x00(....)\xb2\xd0\x01\x00(?=.{2306})", r
 def add_boards(folder: Path) -> dict[str, str]:
     """Write the files of each board, and return the verilated configurations by board.
 
-    Boards with a frame buffer are left out: the page counts the cycles of those that race the beam.
+    Boards with a frame buffer are left out: the page counts the cycles of those that race the beam. So are boards with
+    a Gowin GW2A, whose bitstreams the page does not patch.
     """
     folder.mkdir()
     configurations = {}
     for name in board_names():
-        if "boot_block_bits" in build.read_board(name):
+        description = build.read_board(name)
+        if "boot_block_bits" in description or build.is_gowin(description):
             continue
         board = read_board(name)
         bits = pack(board, board.config)

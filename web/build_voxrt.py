@@ -1,4 +1,7 @@
-"""Build build/web/voxrt.wasm of web/src and the native sources: ``python web/build_voxrt.py [--jobs N]``."""
+"""Build build/web/voxrt.wasm of web/src and the native sources: ``python web/build_voxrt.py [--jobs N]``.
+
+voxrt_edit.wasm has what edits, and voxrt_view.wasm what the custom element needs.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +15,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 WASM = BUILD / "voxrt.wasm"
+EDITS = "edit_interface.cpp"
 
 ROOMS = {"voxelize": "voxelize/src", "octree": "octree/src", "sim": "sim/src/model", "bake": "sim/src/bake"}
 LEFT_OUT = {"block_file.cpp", "disk_assembly.cpp", "module.cpp"}
@@ -31,15 +35,25 @@ def main() -> None:
 def build(jobs: int | None = None) -> Path:
     """Compile what changed, link, and return the module."""
     link_headers()
-    return link(WASM, our_units(), jobs)
+    return link(WASM, [unit for unit in our_units() if unit.source.name != EDITS], jobs)
 
 
 def build_view(jobs: int | None = None) -> Path:
     """Link, and return, a module that shows memories and builds none: a third of the other one."""
+    return build_part("voxrt_view.wasm", {"interface.cpp"}, jobs)
+
+
+def build_edit(jobs: int | None = None) -> Path:
+    """Link, and return, a module that edits and shows memories: pages load it when it is wanted."""
+    return build_part("voxrt_edit.wasm", {"interface.cpp", EDITS}, jobs)
+
+
+def build_part(name: str, calls: set[str], jobs: int | None) -> Path:
+    """Link, and return, a module with some sources of the C interface."""
     link_headers()
-    calls = ROOT / "web" / "src"
-    units = [unit for unit in our_units() if unit.source.parent != calls or unit.source.name == "interface.cpp"]
-    return link(BUILD / "voxrt_view.wasm", units, jobs)
+    folder = ROOT / "web" / "src"
+    units = [unit for unit in our_units() if unit.source.parent != folder or unit.source.name in calls]
+    return link(BUILD / name, units, jobs)
 
 
 def our_units() -> list[Unit]:

@@ -11,6 +11,7 @@ manuals, and example scenes. Nothing is bundled but voxrt-view.js, the custom el
 
 from __future__ import annotations
 
+import hashlib
 import json
 import re
 import shutil
@@ -21,7 +22,7 @@ from pathlib import Path
 
 from board_files import add_boards
 from build_hardware import build_hardware
-from build_voxrt import build, build_view
+from build_voxrt import build, build_edit, build_view
 from compiler import BUILD, ROOT
 
 import voxrt
@@ -41,7 +42,7 @@ SHARED = (
     "camera.js", "camera_text.js", "controls.css", "copy_address.js", "crc32.js", "drop.js", "elements.js",
     "events.js", "figures.js", "flight.js", "frame_requests.js", "gestures.js", "glide.js", "icon.svg", "light.js",
     "navigation.js", "notices.js", "picture.js", "pilot.js", "resolution.js", "save.js", "style.css", "tools.js",
-    "vectors.js", "viewpoint.js", "views.js",
+    "vectors.js", "viewpoint.js", "views.js", "walk.js",
 )  # fmt: skip
 """Files of the server's page."""
 
@@ -56,7 +57,7 @@ EXAMPLES = {
 
 def main() -> None:
     """Build the modules, and put the site together anew."""
-    make_site(build(), build_hardware("tiny"))
+    make_site(build(), build_edit(), build_hardware("tiny"))
     files = [path for path in SITE.rglob("*") if path.is_file()]
     print(f"{SITE.relative_to(ROOT)}: {len(files)} files, {sum(path.stat().st_size for path in files):,} bytes")
 
@@ -92,6 +93,7 @@ def make_site(*modules: Path) -> None:
         "examples": {name: {"title": title, "files": files} for name, (title, files) in EXAMPLES.items()},
     }
     (made / "site.json").write_text(json.dumps(known, indent=2) + "\n")
+    bundle_offline(made)
     shutil.rmtree(SITE, ignore_errors=True)
     made.rename(SITE)
 
@@ -118,6 +120,18 @@ def bundle_view(site: Path) -> None:
     for path in (script, module, site / "voxrt_view.js"):
         path.unlink()
     shutil.copyfile(site / "voxrt-view.js", PACKAGE / "voxrt-view.js")
+
+
+def bundle_offline(site: Path) -> None:
+    """Make one script of the service worker and the list of the files that it keeps: all but what is loaded late."""
+    late = {"boards", "voxrt-view.js", "voxrt_hardware.wasm", "offline.js", "package.json"}
+    kept = [path for path in sorted(site.rglob("*")) if path.is_file() and late.isdisjoint(path.parts)]
+    version = hashlib.sha256(b"".join(path.read_bytes() for path in kept)).hexdigest()[:16]
+    files = json.dumps(["./", *(path.relative_to(site).as_posix() for path in kept)])
+    known, script = site / "offline_files.js", site / "offline.js"
+    known.write_text(f"export const version = {json.dumps(version)}, files = {files};\n", encoding="utf-8")
+    bundle(script, script, "--format=iife", "--allow-overwrite")
+    known.unlink()
 
 
 def bundle(entry: Path, made: Path, *options: str) -> None:

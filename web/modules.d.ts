@@ -14,10 +14,14 @@ declare module "*/voxrt/scene.js" { export * from "voxrt/scene.js"; }
 declare module "*/voxrt/voxrt.js" { export * from "voxrt/voxrt.js"; }
 declare module "*/voxrt/warnings.js" { export * from "voxrt/warnings.js"; }
 declare module "*/voxrt/words.js" { export * from "voxrt/words.js"; }
+declare module "*/voxrt/world.js" { export * from "voxrt/world.js"; }
 
 // What web/make_site.py puts into voxrt-view.js: a script as text, a module in zlib's bytes.
 declare module "*.txt" { const text: string; export default text; }
 declare module "*.zlib" { const bytes: Uint8Array<ArrayBuffer>; export default bytes; }
+
+// What web/make_site.py writes for offline.js.
+declare module "*/offline_files.js" { export const version: string; export const files: string[]; }
 
 // @types/three leaves these classes out.
 declare module "*/loaders/usd/USDAParser.js" { export const USDAParser: new () => import("./page/usd/three_private.js").TextParser; }

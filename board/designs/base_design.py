@@ -22,9 +22,13 @@ _ROWS, _HALF_BITS = 1024, 9
 _STEP = 512  # rows of a memory that are in the same block RAMs
 _SECTION = re.compile(r"^\.bram_init (\d+)\n((?:(?:[0-9a-f]{3} ?){8}\n)+)", re.MULTILINE)
 # Bits per word of a block RAM: where a word's bits are in a row of 18 bits, by the word's number in the row.
-_PLACES = {bits: [9 * (word * bits // 8) + word * bits % 8 for word in range(16 // bits)] for bits in (1, 2, 4)}
+_PLACES = {bits: [9 * (word * bits // 8) + word * bits % 8 for word in range(16 // bits)] for bits in (1, 2, 4, 8)}
 _PLACES[9] = [0, 9]
 _PLACES[18] = [0]
+ECP5_WIDTHS = (1, 2, 4, 9, 18, 36)
+"""Widths at which a block RAM of an ECP5 is used."""
+GOWIN_WIDTHS = (1, 2, 4, 8, 9, 16, 18, 32, 36)
+"""The same of a GW2A: 8, 16 and 32 leave out every ninth bit."""
 
 
 @dataclass(frozen=True)
@@ -38,8 +42,8 @@ class Slice:
     row, rows
         First row of the memory, and how many.
     bit, bits
-        First bit of each row, and how many: the width at which the block RAM is used, 1, 2, 4, 9, 18 or 36. Bits
-        beyond those of the memory are 0.
+        First bit of each row, and how many: the width at which the block RAM is used. Bits beyond those of the memory
+        are 0.
     """
 
     wid: int
@@ -99,13 +103,39 @@ def find_slices(config: str, memories: Mapping[str, tuple[int, int]]) -> dict[st
     ValueError
         A part of a memory is in no block RAM.
     """
+    return match_slices(read_block_rams(config), memories, ECP5_WIDTHS)
+
+
+def match_slices(
+    sections: Mapping[int, NDArray[np.uint32]], memories: Mapping[str, tuple[int, int]], widths: Sequence[int]
+) -> dict[str, list[Slice]]:
+    """Find memories among block RAMs, as `find_slices` does.
+
+    Parameters
+    ----------
+    sections
+        Rows of 18 bits, uint32, shape (1024,), by number.
+    memories
+        Rows and bits of each memory, by name.
+    widths
+        At which the part's block RAMs are used.
+
+    Returns
+    -------
+    dict
+        The slices of each memory.
+
+    Raises
+    ------
+    ValueError
+        A part of a memory is in no block RAM.
+    """
     found: dict[str, list[Slice]] = {}
-    sections = read_block_rams(config)
     for name, (rows, bits) in memories.items():
         contents = base_contents(name, rows, bits)
         candidates = {
-            _encode(contents, piece).tobytes(): piece
-            for width in (1, 2, 4, 9, 18, 36)
+            encode_slice(contents, piece).tobytes(): piece
+            for width in widths
             for row in range(0, rows, _words(width))
             for bit in range(0, bits, width)
             for piece in [Slice(0, row, _words(width), bit, width)]
@@ -147,7 +177,7 @@ def patch_config(
         The text; nothing else differs.
     """
     sections = {
-        piece.wid: _write_section(_encode(contents[name], piece))
+        piece.wid: _write_section(encode_slice(contents[name], piece))
         for name, slices in memories.items()
         for piece in slices
     }
@@ -171,18 +201,22 @@ def places(bits: int) -> list[int]:
 
 
 def _words(bits: int) -> int:
-    return 512 if bits == 36 else _ROWS * len(_PLACES[bits])
+    return _ROWS * (18 if bits % 9 == 0 else 16) // bits
 
 
-def _encode(contents: NDArray[np.uint32], piece: Slice) -> NDArray[np.uint32]:
-    """Give the rows of 18 bits of a block RAM, shape (1024,)."""
+def encode_slice(contents: NDArray[np.uint32], piece: Slice) -> NDArray[np.uint32]:
+    """Give the rows of 18 bits of the block RAM that holds a slice, shape (1024,)."""
     words = np.zeros(piece.rows, dtype=np.uint64)
     held = contents[piece.row : piece.row + piece.rows].astype(np.uint64)
     words[: len(held)] = held >> np.uint64(piece.bit) & np.uint64((1 << piece.bits) - 1)
-    if piece.bits == 36:
-        return np.stack([words & np.uint64(0x3FFFF), words >> np.uint64(18)], axis=1).ravel().astype(np.uint32)
+    # The part of a word that is in a row.
+    row_bits = piece.bits if piece.bits < 32 else piece.bits // 2
+    if piece.bits >= 32:
+        words = np.stack([words & np.uint64((1 << row_bits) - 1), words >> np.uint64(row_bits)], axis=1).ravel()
+    if row_bits == 16:
+        words = words & np.uint64(0xFF) | words >> np.uint64(8) << np.uint64(_HALF_BITS)
     rows = np.zeros(_ROWS, dtype=np.uint32)
-    places = _PLACES[piece.bits]
+    places = _PLACES.get(row_bits, [0])
     for number, place in enumerate(places):
         rows |= words[number :: len(places)].astype(np.uint32) << np.uint32(place)
     return rows

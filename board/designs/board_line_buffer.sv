@@ -6,7 +6,9 @@
 module board_line_buffer
   import board_pkg::*;
 #(
-  parameter int unsigned LineBits = 4  // 2**LineBits lines: 4 .. 7.
+  parameter int unsigned LineBits   = 4,  // 2**LineBits lines: 4 .. 7.
+  // Lines have room for 2**ColumnBits pixels: 10; or 9, for boards that show pixels as 2 x 2 or larger.
+  parameter int unsigned ColumnBits = 10
 ) (
   // System clock.
   input  logic              clk_i,
@@ -29,8 +31,8 @@ module board_line_buffer
   output logic       [23:0] pixel_o        // Three clocks after column_i.
 );
   if (LineBits < 4 || LineBits > 7) $error("board_line_buffer: LineBits must be 4 to 7 bits");
+  if (ColumnBits < 9 || ColumnBits > 10) $error("board_line_buffer: ColumnBits must be 9 or 10");
 
-  localparam int unsigned ColumnBits = 10;
   localparam int unsigned Lines = 2 ** LineBits;
 
   // Where the core writes.
@@ -113,7 +115,7 @@ module board_line_buffer
       shown_q <= line;
       if (row_i == 10'(Rows)) parity_seen_q <= lines_q.parity;
     end
-    read_place_q <= {shown_q[LineBits-1:0], column_i >> scale_i};
+    read_place_q <= {shown_q[LineBits-1:0], ColumnBits'(column_i >> scale_i)};
     read_q       <= data_q[read_place_q];
     pixel_o      <= shows_q ? read_q : '0;
     if (!pixel_rst_ni) begin

@@ -12,6 +12,7 @@ module board_system
   parameter int unsigned RayClocks    = 1,
   parameter int unsigned ClockHz      = 75_000_000,
   parameter int unsigned LineBits     = 4,
+  parameter int unsigned ColumnBits   = 10,
   parameter int unsigned GapBits      = 22,
   parameter bit          ButtonsLow   = 1'b0,
   // What the octree memory and the table hold from the beginning, for $readmemh.
@@ -233,7 +234,8 @@ module board_system
   end
 
   board_line_buffer #(
-    .LineBits(LineBits)
+    .LineBits  (LineBits),
+    .ColumnBits(ColumnBits)
   ) u_lines (
     .clk_i,
     .rst_ni,

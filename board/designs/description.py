@@ -1,5 +1,7 @@
 """The description of a board, ``board.json``: what it must have, and what the clock generator can make of it.
 
+A description says by its `top` whether its part is an ECP5 or a Gowin GW2A.
+
 ``docs/board-files.md`` describes its keys.
 """
 
@@ -24,6 +26,7 @@ CACHED = 2
 
 _COMPARED_MHZ = Fraction(25, 8)  # the least that the PLL's phase detector takes: Trellis' ecppll
 
+_Number = Annotated[str, msgspec.Meta(pattern=r"^\d{1,3}$")]
 _Pin = Annotated[str, msgspec.Meta(pattern=r"^[A-Z]{1,2}\d{1,2}$")]
 _Divider = Annotated[int, msgspec.Meta(ge=1, le=128)]
 _Two = Annotated[tuple[_Pin, ...], msgspec.Meta(min_length=2, max_length=2)]
@@ -99,6 +102,48 @@ class Description(_Part, frozen=True):
     other_revisions: str | None = None
 
 
+class GowinPll(_Part, frozen=True):
+    """The system clock is 756 MHz / system."""
+
+    system_divider: Literal[10, 12, 14, 16, 18, 20, 21, 24]
+
+
+class GowinPins(_Part, frozen=True):
+    """Where the ports of the design are, by the package's numbers."""
+
+    clk: _Number
+    uart_rx: _Number
+    uart_tx: _Number
+    dvi: Annotated[tuple[_Number, ...], msgspec.Meta(min_length=4, max_length=4)]
+    dvi_n: Annotated[tuple[_Number, ...], msgspec.Meta(min_length=4, max_length=4)]
+    buttons: Annotated[tuple[_Number, ...], msgspec.Meta(min_length=1, max_length=3)]
+    buttons_low: bool
+    leds: Annotated[tuple[_Number, ...], msgspec.Meta(min_length=1, max_length=8)]
+    leds_low: bool
+
+
+class GowinDescription(_Part, frozen=True):
+    """All of a ``board.json`` of a board with a Gowin GW2A."""
+
+    title: str
+    top: Literal["gowin_top"]
+    device: str
+    part: Literal["GW2A-18", "GW2A-18C"]
+    openfpgaloader: str
+    clock_mhz: Literal[27]
+    pll: GowinPll
+    core: dict[str, int]
+    octree_blocks: Annotated[int, msgspec.Meta(ge=1)]
+    line_bits: Annotated[int, msgspec.Meta(ge=4, le=7)]
+    column_bits: Annotated[int, msgspec.Meta(ge=9, le=10)]
+    pins: GowinPins
+    seed: int
+
+
+GOWIN_TOP = "gowin_top"
+"""The top of designs for a Gowin GW2A."""
+
+
 def read_description(path: Path) -> dict[str, Any]:
     """Read a ``board.json``, as it is.
 
@@ -109,10 +154,14 @@ def read_description(path: Path) -> dict[str, Any]:
     """
     try:
         text = path.read_bytes()
-        described = msgspec.json.decode(text, type=Description)
-        _check_clocks(described)
-        _check_memory(described)
         board: dict[str, Any] = msgspec.json.decode(text)
+        if isinstance(board, dict) and board.get("top") == GOWIN_TOP:
+            _check_blocks(msgspec.json.decode(text, type=GowinDescription))
+        else:
+            described = msgspec.json.decode(text, type=Description)
+            _check_clocks(described)
+            _check_blocks(described)
+            _check_sdram(described)
     except OSError as error:
         raise ValueError(f"{path}: cannot be read: {error.strerror}; name the board.json of your board") from error
     except msgspec.ValidationError as error:
@@ -139,12 +188,15 @@ def _check_clocks(board: Description) -> None:
         )
 
 
-def _check_memory(board: Description) -> None:
+def _check_blocks(board: Description | GowinDescription) -> None:
     on_chip, bits = board.core.get("MemoryForm", 0) != CACHED, board.core.get("BlockBits", -1)
     if bits < 0:
         raise ValueError("core has no BlockBits: the octree memory holds 2**BlockBits blocks")
     if board.octree_blocks > 1 << bits or (on_chip and board.octree_blocks != 1 << bits):
         raise ValueError(f"octree_blocks {board.octree_blocks} does not go with BlockBits {bits}; take {1 << bits}")
+
+
+def _check_sdram(board: Description) -> None:
     if (board.pins.sdram is None) == (board.top == "ecp5_top_sdram"):
         raise ValueError("pins.sdram goes with the top ecp5_top_sdram, and with no other")
 

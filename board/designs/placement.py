@@ -16,7 +16,13 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-_FILES = {"netlist": "top.json", "constraints": "top.lpf", "config": "top.config", "placed": "placed.json"}
+_FILES = {
+    "netlist": "top.json",
+    "constraints": "top.lpf",
+    "config": "top.config",
+    "placed": "placed.json",
+    "bitstream": "top.fs",
+}
 
 
 class Placement(msgspec.Struct, frozen=True):
@@ -33,7 +39,7 @@ class Placement(msgspec.Struct, frozen=True):
     digests
         SHA-256 of the ``netlist`` that yosys wrote, of ``constraints`` (the LPF file), of ``config`` (what nextpnr
         wrote and the board's files hold, compressed), and of ``placed``, the netlist after place and route, which is
-        simulated.
+        simulated; of a GW2A, ``bitstream``.
     report
         What nextpnr reported: `fmax`, `utilization`, `critical_paths`.
     """

@@ -32,6 +32,7 @@ from voxrt.board.designs.boot_table import (
 )
 from voxrt.board.device import Counters, Frame, Identity
 from voxrt.board.errors import DeviceError, Refused
+from voxrt.board.patch_writes import block_writes, write_blocks
 from voxrt.board.register_writes import (
     PROBLEMS,
     camera_writes,
@@ -46,7 +47,7 @@ from voxrt.board.registers import MATERIALS, REGISTERS
 from voxrt.board.scene import Scene, check_memory, octree_span
 from voxrt.board.scene_memory import LoadedScene
 from voxrt.board.view import FEATURES, refit
-from voxrt.octree.words import move_pointers
+from voxrt.octree.words import EMPTY, move_pointers
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -58,6 +59,7 @@ if TYPE_CHECKING:
     from voxrt.board.frame_drop import FrameDrop
     from voxrt.board.register_writes import Writes
     from voxrt.board.view import Camera, Lighting, View
+    from voxrt.octree import Patch
 
 _BOARD = int.from_bytes(b"VXBD", "big")
 _CORE = int.from_bytes(b"VXRT", "big")
@@ -72,6 +74,8 @@ _FIRST_WORDS = 4096
 """Words of an octree that are read at first; most of a small one."""
 _FREE_WORDS = (1024, 1536)
 """Parts of the table where other lists of the host are written, in turn."""
+_LIST_WORDS = 512
+"""Words of such a part."""
 
 
 class SerialDevice:
@@ -118,7 +122,7 @@ class SerialDevice:
             raise DeviceError(f"{link.name}: design version {version >> 8} is not supported; load a new bitstream")
         configuration = self._core("configuration")
         self.lanes = lanes = configuration["lanes"]
-        self.ray_clocks = configuration["ray_clocks"]
+        self.ray_clocks = configuration["ray_clocks"] or 8
         self.clock_hz = self._board("clock")
         self.buffer_lines = 16 << (version >> 16 & 3)
         self.frame_buffer = bool(configuration["cached"])
@@ -140,23 +144,31 @@ class SerialDevice:
     def loaded(self) -> LoadedScene | None:
         """Read the scene that the board shows, and where it is; None if its words are no octree."""
         root, depth = self._core("root")["address"], self._core("depth")["depth"]
-        words, end = np.zeros(0, dtype=np.uint32), _FIRST_WORDS
-        while len(words) < end:  # a level more each time, at least
-            start, end = root + len(words), min(end, self.identity.capacity - root)
-            if end <= len(words):
-                break
-            more = self.read_memory(start, root + end - start)
-            words = np.concatenate([words, move_pointers(more, -root)])
-            end = octree_span(words, 0, depth)[1]
+        if root >= self.identity.capacity:
+            return None
+        memory = np.full(self.identity.capacity, EMPTY, np.uint32)  # what is not read yet ends every path
+        start = stop = root
+        first, end = root, root + _FIRST_WORDS
+        while first < start or end > stop:  # a level more each time, at least
+            end = min(end, len(memory))
+            for low, high in ((first, start), (stop, end)):
+                if low < high:
+                    memory[low:high] = self.read_memory(low, high - low)
+            start, stop = min(first, start), max(stop, end)
+            first, end = octree_span(memory, root, depth)
+            first, end = (root, root + 1) if end == 1 else (min(first, root), max(end, root + 1))
+            end = min(end, len(memory))
+        base = first // 8 * 8
+        words = move_pointers(memory[base : end + (base + 1 - end) % 8], -base)
+        words[0] = words[root - base]  # that of an edited scene is any word
         try:
-            words = words[: octree_span(words, 0, depth)[1]]
             check_memory(words, depth)
         except Refused:
             return None
         rows = _material_rows(self._link.read(TABLE + 4 * _SCENE_WORD, CAMERAS_WORD))
         colours = np.stack([rows >> 16 & 0xFF, rows >> 8 & 0xFF, rows & 0xFF], axis=1).astype(np.uint8)
-        scene = Scene("the scene on the board", depth, words, colours, (rows >> 24 & 1).astype(np.bool_))
-        return LoadedScene(scene, root)
+        mirrors = (rows >> 24 & 1).astype(np.bool_)
+        return LoadedScene(Scene("the scene on the board", depth, words, colours, mirrors, roots=(root - base,)), base)
 
     def registers(self) -> Mapping[str, int]:
         """Read all registers, by name: the ray tracer's, then the board's."""
@@ -176,11 +188,12 @@ class SerialDevice:
         self._model.write_memory(address, words)
 
     def read_memory(self, address: int, count: int) -> NDArray[np.uint32]:
-        """Read `count` words from word `address` on."""
+        """Read `count` words from word `address` on. The model has them then, too."""
         words = np.zeros(count, dtype=np.uint32)
         for page, word, part in _pages(address, count):
             with self._page(page):
                 words[part] = self._link.read(OCTREE_MEMORY + 4 * word, part.stop - part.start)
+        self._model.write_memory(address, words)
         return words
 
     def write_materials(self, colours: NDArray[np.uint8], mirrors: NDArray[np.bool_], /) -> None:
@@ -212,18 +225,33 @@ class SerialDevice:
 
     def select_scene(self, root: int, depth: int) -> None:
         """Show the octree at word `root` from the next frame on, with the materials that were written last."""
-        writes = register_writes("depth", depth=depth) + register_writes("root", address=root)
-        if self._materials is not None:
-            writes += [(MATERIALS, material_rows(*self._materials))]
+        writes = self._scene_writes(root, depth)
         orbit, self._orbit = self._orbit, None
         if orbit is None:
             self._play(writes, _SCENE_WORD)
         else:
             self._replace_orbit(writes + orbit[1], orbit[0])
-        if self._materials is not None:
-            self._model.write_materials(*self._materials)
+        self._hand_on_materials()
         self._model.select_scene(root, depth)
-        self._materials = None
+
+    def apply_patch(self, patch: Patch, depth: int) -> None:
+        """Write what an edit changed by one list, between two frames; blocks without room in it are written before.
+
+        The word of the root is always in the list: the memory knows then that its caches hold an older one.
+        """
+        last = list(_paged_writes(patch.root, np.array([patch.root_word], np.uint32)))
+        writes = [write for address, words in block_writes(patch) for write in _paged_writes(address, words)]
+        final = last + self._scene_writes(patch.root, depth)
+        if len(encode_list(writes + final)) <= _LIST_WORDS:
+            final = writes + final
+            for address, words in block_writes(patch):
+                self._model.write_memory(address, words)
+        else:
+            write_blocks(self, patch)
+        self._play_next(final)
+        self._hand_on_materials()
+        self._model.write_memory(patch.root, np.array([patch.root_word], np.uint32))
+        self._model.select_scene(patch.root, depth)
 
     def frame(self, view: View, seconds: float = math.inf, drop: FrameDrop | None = None) -> Frame:
         """Render a view by the model, and show it on the monitor; the model's picture is returned."""
@@ -237,8 +265,7 @@ class SerialDevice:
         writes += camera_writes(refit(view.camera, view.size, size)) + lighting_writes(view.lighting)
         writes += [(MATERIALS, [red << 16 | green << 8 | blue])]
         writes += [(BOARD_REGISTERS["control"], [control & _PERIOD_BITS | scale << 4 | STEERED | RUN])]
-        self._play(writes, _FREE_WORDS[self._next_list])
-        self._next_list = (self._next_list + 1) % len(_FREE_WORDS)
+        self._play_next(writes)
         problem = tell_problems(self._core("status"))
         if problem:
             clear = encode_fields("status", **dict.fromkeys(PROBLEMS, 1))  # writing 1 clears
@@ -292,6 +319,22 @@ class SerialDevice:
             self._write_board("control", control)
             raise
 
+    def _scene_writes(self, root: int, depth: int) -> Writes:
+        """Give the writes that select an octree, with the materials that were written last and not shown yet."""
+        writes = register_writes("depth", depth=depth) + register_writes("root", address=root)
+        return writes if self._materials is None else [*writes, (MATERIALS, material_rows(*self._materials))]
+
+    def _hand_on_materials(self) -> None:
+        """Give the model the materials that the board has now."""
+        if self._materials is not None:
+            self._model.write_materials(*self._materials)
+        self._materials = None
+
+    def _play_next(self, writes: Writes) -> None:
+        """Play writes from a part of the table that the last ones are not in."""
+        self._play(writes, _FREE_WORDS[self._next_list])
+        self._next_list = (self._next_list + 1) % len(_FREE_WORDS)
+
     def _play(self, writes: Writes, word: int) -> None:
         """Let the board carry out writes, as a list at a word of the table, between two frames; wait until it has."""
         self._write_checked(TABLE + 4 * word, encode_list(writes))
@@ -335,6 +378,16 @@ def _pages(address: int, count: int) -> Iterator[tuple[int, int, slice]]:
         stop = min(count, start + PAGE_WORDS - word)
         yield page, word, slice(start, stop)
         start = stop
+
+
+def _paged_writes(address: int, words: NDArray[np.uint32]) -> Iterator[tuple[int, list[int]]]:
+    """Give the writes of a list that writes words of the octree. It leaves the first page in the address map."""
+    for page, word, part in _pages(address, len(words)):
+        if page:
+            yield SDRAM_REGISTERS["page"], [page]
+        yield OCTREE_MEMORY + 4 * word, words[part].tolist()
+        if page:
+            yield SDRAM_REGISTERS["page"], [0]
 
 
 def _material_rows(table: NDArray[np.uint32]) -> NDArray[np.uint32]:

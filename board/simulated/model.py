@@ -10,9 +10,9 @@ import numpy as np
 
 from voxrt.board.device import Counters, Frame, Identity
 from voxrt.board.errors import DeviceError, FrameDropped, TooSlow
-from voxrt.board.scene import octree_span
+from voxrt.board.patch_writes import write_patch
 from voxrt.board.view import FEATURES
-from voxrt.octree.words import EMPTY, move_pointers
+from voxrt.octree.words import EMPTY
 from voxrt.sim import _model
 
 if TYPE_CHECKING:
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from voxrt.board.frame_drop import FrameDrop
     from voxrt.board.view import View
+    from voxrt.octree import Patch
 
 MODEL_CAPACITY = 1 << 25
 """Words of the model's memory."""
@@ -43,20 +44,34 @@ class _Memory:
         self.root, self.depth = 0, 1
         self._words = np.zeros(capacity, dtype=np.uint32)
         self._words[0] = EMPTY
+        self._end = 1  # of what was written
+        self._models: dict[tuple[int, int], _model.Memory] = {}  # of the roots of the words that are there
 
     def write(self, address: int, words: NDArray[np.uint32]) -> None:
         end = self._check(address, len(words))
+        self._models.clear()
         self._words[address:end] = words
+        self._end = max(self._end, end)
 
     def read(self, address: int, count: int) -> NDArray[np.uint32]:
         end = self._check(address, count)
         return self._words[address:end].copy()
 
-    def octree(self) -> NDArray[np.uint32]:
-        """Return the selected octree, moved so that its root is word 0 and its first block follows."""
-        first, end = octree_span(self._words, self.root, self.depth)
-        words = np.concatenate([self._words[self.root : self.root + 1], self._words[first:end]])
-        return move_pointers(words, 1 - first)
+    def model(self) -> _model.Memory:
+        """Return the selected octree; those of all roots share a copy of the words."""
+        key = self.root, self.depth
+        if key not in self._models:
+            words = self._words[: self._end + (1 - self._end) % 8]
+            other = next(iter(self._models.values()), None)
+            try:
+                self._models[key] = (
+                    _model.Memory(words, self.depth, self.root)
+                    if other is None
+                    else _model.Memory(other, self.depth, self.root)
+                )
+            except ValueError as error:
+                raise DeviceError(f"the model refuses the memory: {error}") from error
+        return self._models[key]
 
     def _check(self, address: int, count: int) -> int:
         if not 0 <= address <= address + count <= self.capacity:
@@ -91,8 +106,7 @@ class ModelDevice:
         self._threads = threads
         self._stopped = False
         self._stop = _model.Stop()  # of the present frame
-        self._models: dict[tuple[int, int], _model.Memory] = {}  # of the roots of the words that are there
-        self._model = _model.Memory(self._memory.octree(), self._memory.depth)
+        self._model = self._memory.model()
 
     @property
     def identity(self) -> Identity:
@@ -116,7 +130,6 @@ class ModelDevice:
 
     def write_memory(self, address: int, words: NDArray[np.uint32]) -> None:
         """Write words from word `address` on."""
-        self._models.clear()
         self._memory.write(address, words)
 
     def read_memory(self, address: int, count: int) -> NDArray[np.uint32]:
@@ -130,18 +143,14 @@ class ModelDevice:
     def select_scene(self, root: int, depth: int) -> None:
         """Trace the octree at word `root` from the next frame on."""
         self._memory.root, self._memory.depth = root, depth
-        if (root, depth) not in self._models:
-            octree = self._memory.octree()
-            while self._models and len(octree) * (len(self._models) + 1) > self._memory.capacity:
-                del self._models[next(iter(self._models))]  # the one that was made first
-            try:
-                self._models[root, depth] = _model.Memory(octree, depth)
-            except ValueError as error:
-                raise DeviceError(f"the model refuses the memory: {error}") from error
-        self._model = self._models[root, depth]
+        self._model = self._memory.model()
+
+    def apply_patch(self, patch: Patch, depth: int) -> None:
+        """Write what an edit changed, and trace its root from the next frame on."""
+        write_patch(self, patch, depth)
 
     def frame(self, view: View, seconds: float = math.inf, drop: FrameDrop | None = None) -> Frame:
-        """Render one frame of `view`, within `seconds`, unless it is dropped."""
+        """Render one frame of `view`, with the work of `seconds` of an idle machine, unless it is dropped."""
         started = time.perf_counter()
         stop = self._stop = _model.Stop()
         if self._stopped:  # read after the new object is in place: `stop` may come from another thread at any time
@@ -165,7 +174,7 @@ class ModelDevice:
                 stop=stop,
             )
         except TimeoutError as error:
-            raise TooSlow(f"the frame took more than {seconds:.1f} s") from error
+            raise TooSlow(f"the frame takes more work than {seconds:.1f} s of an idle machine do") from error
         except InterruptedError as error:
             if drop is not None and drop.requested and not self._stopped:
                 raise FrameDropped from error

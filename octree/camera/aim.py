@@ -27,6 +27,7 @@ def look_at(
     size: tuple[int, int],
     field_of_view: float = FIELD_OF_VIEW,
     up: ArrayLike = (0.0, 1.0, 0.0),
+    shift: ArrayLike = (0.0, 0.0),
 ) -> Camera:
     """Make the right-handed camera at `eye` that sees `target` in the middle of the frame.
 
@@ -40,6 +41,8 @@ def look_at(
         Degrees across the frame's shorter side, above 0 and below 180.
     up
         float, shape (3,): the direction that points up in the frame.
+    shift
+        float, shape (2,): how far the middle of the frame lies to the right of `target`, and above it, in pixels.
 
     Raises
     ------
@@ -48,7 +51,9 @@ def look_at(
     """
     from_eye = np.asarray(target, dtype=np.float64) - np.asarray(eye, dtype=np.float64)
     axes = _axes(from_eye, np.asarray(up, dtype=np.float64))
-    return _scaled(np.asarray(eye, dtype=np.float64), axes, focal_length(size, field_of_view), size)
+    focal = focal_length(size, field_of_view)
+    axes[0] += np.asarray(shift, dtype=np.float64) / focal @ axes[1:]
+    return _scaled(np.asarray(eye, dtype=np.float64), axes, focal, size)
 
 
 def frame_points(points: ArrayLike, size: tuple[int, int]) -> Camera:

@@ -44,15 +44,17 @@ class Build(NamedTuple):
     narrow: bool = False  # Multipliers of 18 x 18 bits.
     repeats: bool = False  # Another form of a core that other builds drive with the same benches, for a minute.
     wrapper: tuple[Path, ...] = ()  # The file of the top, if it is none of the core's.
+    edited_frames: int = 16  # See bench_edits.
 
 
 BUILDS = {
-    "lit": Build(CORE, CONFIGURATIONS["lit"], ("bench_core", "bench_registers", "bench_waveforms")),
+    "lit": Build(CORE, CONFIGURATIONS["lit"], ("bench_core", "bench_registers", "bench_waveforms", "bench_edits")),
     "octo-narrow": Build(CORE, CONFIGURATIONS["octo"], ("bench_core",), narrow=True, repeats=True),
     "banked-light": Build(CORE, SMALL | {"Lanes": 5, "MemoryForm": 1, "Light": 1}, ("bench_core",), repeats=True),
     "mirrors": Build(CORE, SMALL | {"Lanes": 2, "Mirrors": 1}, ("bench_core",), repeats=True),
     "micro": Build(CORE, SMALL | {"Lanes": 1, "RayClocks": 4}, ("bench_core",), narrow=True, repeats=True),
     "micro-many": Build(CORE, SMALL | {"Lanes": 5, "RayClocks": 4}, ("bench_core",), narrow=True, repeats=True),
+    "nano": Build(CORE, SMALL | {"Lanes": 1, "RayClocks": 8}, ("bench_core",), narrow=True, repeats=True),
     "lod": Build(CORE, SMALL | {"Lanes": 2, "Lod": 1}, ("bench_lod", "bench_positions")),
     "fifo": Build("voxrt_fifo", {}, ("bench_fifo",)),
     "stream_register": Build("voxrt_stream_register", {}, ("bench_stream_register",)),
@@ -69,12 +71,14 @@ BUILDS = {
     "ray_setup-shared": Build(
         "voxrt_ray_setup", {"MaxDepth": 6, "Lanes": 3, "Light": 1, "RayClocks": 4}, ("bench_ray_setup",)
     ),
+    "ray_setup-serial": Build("voxrt_serial_ray_setup", {"MaxDepth": 6, "Lanes": 3}, ("bench_ray_setup",), narrow=True),
     "divide": Build("voxrt_divide", {}, ("bench_divide",)),
     "shader": Build("voxrt_shader", {}, ("bench_shader",)),
     "shader-many": Build("voxrt_shader", {"Lanes": 5}, ("bench_shader",)),
     "shader-many-shared": Build("voxrt_shader", {"Lanes": 5, "RayClocks": 4}, ("bench_shader",), narrow=True),
     "shader-given": Build("voxrt_shader", {"Given": 1}, ("bench_shader",)),
     "shader-shared": Build("voxrt_shader", {"RayClocks": 4}, ("bench_shader",), narrow=True),
+    "shader-serial": Build("voxrt_serial_shader", {}, ("bench_shader",), narrow=True),
     "multiply": Build("voxrt_multiply", {"ABits": 40, "BBits": 8}, ("bench_multiply",)),
     "multiply-split": Build("voxrt_multiply", {"ABits": 20, "BBits": 20, "LogicBits": 3}, ("bench_multiply",)),
     "multiply-split-wide": Build("voxrt_multiply", {"ABits": 40, "BBits": 8, "LogicBits": 16}, ("bench_multiply",)),
@@ -114,8 +118,14 @@ BUILDS = {
         ("bench_cached_memory",),
     ),
     "cached": Build(
-        CORE, SMALL | {"Lanes": 3, "MemoryForm": 2, "L1SetBits": 1, "L2SetBits": 1}, ("bench_cached_core",)
+        CORE,
+        SMALL | {"Lanes": 3, "MemoryForm": 2, "L1SetBits": 1, "L2SetBits": 1},
+        ("bench_cached_core", "bench_edits"),
     ),
+    **{
+        f"{name}-edits": Build(CORE, CONFIGURATIONS[name], ("bench_edits",), repeats=True, edited_frames=1000)
+        for name in ("tiny", "octo", "cached4")
+    },
     "zynq_cached": Build(
         "voxrt_zynq_cached",
         SMALL | {"Lanes": 2, "L1SetBits": 1, "L2SetBits": 1},
@@ -166,6 +176,7 @@ def run(name: str) -> None:
         build_dir=folder,
         results_xml=str(folder / "results.xml"),
         seed=SEED,
+        extra_env={"EDITED_FRAMES": str(build.edited_frames)},
         test_args=["+verilator+rand+reset+2", f"+verilator+seed+{SEED}"],
     )
     count, failed = get_results(results)

@@ -95,33 +95,59 @@ module voxrt_rays
     );
   end
 
-  voxrt_ray_setup #(
-    .MaxDepth    (MaxDepth),
-    .PositionBits(PositionBits),
-    .Lanes       (Lanes),
-    .Light       (Light),
-    .Lod         (Lod),
-    .RayClocks   (RayClocks)
-  ) u_ray_setup (
-    .clk_i,
-    .rst_ni,
-    .world_i,
-    .root_leaf_i,
-    .root_material_i,
-    .lod_scale_i,
-    .valid_i    (issues || shadow_valid_i),
-    .ready_o    (setup_ready),
-    .lane_i     (shadow_valid_i ? shadow_lane_i : next_lane_q),
-    .direction_i(ray_direction),
-    .shadow_i   (shadow_valid_i),
-    .point_i    (shadow_ray_i.point),
-    .tag_i      (shadow_ray_i.tag),
-    .valid_o,
-    .lane_o,
-    .overflow_o,
-    .ray_o,
-    .weights_o
-  );
+  if (RayClocks == 8) begin : gen_serial
+    logic unused;
+    assign unused = &{lod_scale_i, shadow_lane_i, shadow_ray_i};
+
+    voxrt_serial_ray_setup #(
+      .MaxDepth    (MaxDepth),
+      .PositionBits(PositionBits),
+      .Lanes       (Lanes)
+    ) u_ray_setup (
+      .clk_i,
+      .rst_ni,
+      .world_i,
+      .root_leaf_i,
+      .root_material_i,
+      .valid_i    (issues),
+      .ready_o    (setup_ready),
+      .lane_i     (next_lane_q),
+      .direction_i(ray_direction),
+      .valid_o,
+      .lane_o,
+      .overflow_o,
+      .ray_o,
+      .weights_o
+    );
+  end else begin : gen_pipeline
+    voxrt_ray_setup #(
+      .MaxDepth    (MaxDepth),
+      .PositionBits(PositionBits),
+      .Lanes       (Lanes),
+      .Light       (Light),
+      .Lod         (Lod),
+      .RayClocks   (RayClocks)
+    ) u_ray_setup (
+      .clk_i,
+      .rst_ni,
+      .world_i,
+      .root_leaf_i,
+      .root_material_i,
+      .lod_scale_i,
+      .valid_i    (issues || shadow_valid_i),
+      .ready_o    (setup_ready),
+      .lane_i     (shadow_valid_i ? shadow_lane_i : next_lane_q),
+      .direction_i(ray_direction),
+      .shadow_i   (shadow_valid_i),
+      .point_i    (shadow_ray_i.point),
+      .tag_i      (shadow_ray_i.tag),
+      .valid_o,
+      .lane_o,
+      .overflow_o,
+      .ray_o,
+      .weights_o
+    );
+  end
 
 `ifndef SYNTHESIS
   logic [Lanes-1:0] credit_q, credit;

@@ -131,22 +131,41 @@ module voxrt_pixels
     assign brightness       = '0;
   end
 
-  voxrt_shader #(
-    .Lanes    (Lanes),
-    .Given    (Given),
-    .RayClocks(RayClocks)
-  ) u_shader (
-    .clk_i,
-    .rst_ni,
-    .raster_i,
-    .shading_i,
-    .material_write_i,
-    .valid_i     (bright_valid),
-    .ready_o     (bright_ready),
-    .pixel_i     (bright_pixel),
-    .brightness_i(brightness),
-    .pixel_valid_o,
-    .pixel_ready_i,
-    .pixel_o
-  );
+  if (RayClocks == 8) begin : gen_serial
+    logic unused_brightness;
+    assign unused_brightness = ^brightness;
+
+    voxrt_serial_shader u_shader (
+      .clk_i,
+      .rst_ni,
+      .raster_i,
+      .shading_i,
+      .material_write_i,
+      .valid_i(bright_valid),
+      .ready_o(bright_ready),
+      .pixel_i(bright_pixel),
+      .pixel_valid_o,
+      .pixel_ready_i,
+      .pixel_o
+    );
+  end else begin : gen_pipeline
+    voxrt_shader #(
+      .Lanes    (Lanes),
+      .Given    (Given),
+      .RayClocks(RayClocks)
+    ) u_shader (
+      .clk_i,
+      .rst_ni,
+      .raster_i,
+      .shading_i,
+      .material_write_i,
+      .valid_i     (bright_valid),
+      .ready_o     (bright_ready),
+      .pixel_i     (bright_pixel),
+      .brightness_i(brightness),
+      .pixel_valid_o,
+      .pixel_ready_i,
+      .pixel_o
+    );
+  end
 endmodule

@@ -4,6 +4,7 @@
 import { Advanced } from "./advanced.js";
 import { fromRegisters, pixelDirection, toRegisters } from "./camera.js";
 import { Connection } from "./connection.js";
+import { EditTools } from "./edit_tools.js";
 import { $, all } from "./elements.js";
 import { Figures } from "./figures.js";
 import { FrameRequests } from "./frame_requests.js";
@@ -41,6 +42,7 @@ export class App {
     this.light = new Light(this);
     this.advanced = new Advanced(this);
     this.link = new SceneLink(this);
+    this.editing = new EditTools(this);
     this.connection.on("hello", (hello) => this.#greet(hello));
     this.connection.on("disconnected", (away) => this.#leave(away));
     this.connection.on("state", (state) => this.#show(state));
@@ -103,16 +105,22 @@ export class App {
     return this.#poseOf(camera, size);
   }
 
-  /** The voxel under a place of the page becomes the target. @param {number} x @param {number} y */
-  async focusAt(x, y) {
+  /** The ray through a place of the page. @param {number} x @param {number} y */
+  rayAt(x, y) {
     const pose = this.view();
-    if (!pose || !this.hasControl()) return;
+    if (!pose) return null;
     const size = [$("picture").width, $("picture").height];
     const [column, row] = this.picture.pixelAt(x, y);
     const registers = toRegisters(pose, size);
-    const direction = pixelDirection(registers, size, column, row);
+    return { origin: registers.position, direction: pixelDirection(registers, size, column, row) };
+  }
+
+  /** The voxel under a place of the page becomes the target. @param {number} x @param {number} y */
+  async focusAt(x, y) {
+    const ray = this.hasControl() && !this.editing.active ? this.rayAt(x, y) : null;
+    if (!ray) return;
     try {
-      const { hit } = await this.connection.request("ray", { origin: registers.position, direction });
+      const { hit } = await this.connection.request("ray", ray);
       if (hit) this.glide((now) => focus(now, hit.point, this.limit()));
     } catch (error) {
       notice("error", "There is no point to focus", /** @type {Error} */ (error).message);
@@ -166,7 +174,8 @@ export class App {
     $("details").textContent =
       scene.number === 0 ? "" : `${2 ** scene.depth}³ voxels · ${scene.words.toLocaleString()} words`;
     $("picture").style.backgroundColor = `rgb(${view.background.join()})`;
-    for (const panel of [this.scenes, this.player, this.light, this.advanced, this.link]) panel.show(state);
+    for (const panel of [this.scenes, this.player, this.light, this.advanced, this.link, this.editing])
+      panel.show(state);
     $("connection").dataset.state = trouble ? "disconnected" : "connected";
     $("connection").textContent = trouble ? "no frames" : this.device().name;
     if (trouble) notice("error", "There are no frames", trouble);

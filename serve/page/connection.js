@@ -1,7 +1,7 @@
 // The connection to the frame server: it reconnects by itself, numbers the requests and dispatches what arrives.
 
 import { Events } from "./events.js";
-import { PROTOCOL, readFrame } from "./protocol.js";
+import { isPart, PART_HEADER, PROTOCOL, readFrame } from "./protocol.js";
 import { askForReason } from "./refusal.js";
 /** @import { Registers, Size } from "./camera.js" */
 /** @import { Frame, Hello, Progress, State, View } from "./protocol.js" @import { Refusal } from "./refusal.js" */
@@ -13,7 +13,8 @@ const RETRY = { first: 500, longest: 5000 }; // milliseconds
 /** @typedef {Progress & { type: string, bytes: number }} Report */
 
 /** What answers hold, each some of it. @typedef {{ request: number, upload: number, scene: { name: string }, hit: { point:
- * Vector } | null, registers: Record<string, number>, counters: Record<string, number> }} Answer */
+ * Vector, voxel: Vector, material: number, face: number | null } | null, files: { name: string, size: number }[], part:
+ * Uint8Array<ArrayBuffer>, registers: Record<string, number>, counters: Record<string, number> }} Answer */
 
 /** @typedef {{ resolve: (answer: Answer) => void, reject: (error: Error) => void, progress?: ((report: Report) =>
  * void) | null }} Pending a request that waits for its answer */
@@ -33,6 +34,7 @@ export class Connection extends Events {
   /** @type {Map<number, number>} when view changes were sent whose frame has not arrived, by request */
   sent = new Map();
   #number = 0;
+  #part = 0; // the request that a part answers
   #retry = RETRY.first;
   /** @type {ReturnType<typeof setTimeout> | undefined} */ #timer;
 
@@ -68,7 +70,7 @@ export class Connection extends Events {
     const socket = new WebSocket(`${scheme}://${location.host}/v${PROTOCOL}${query}`);
     socket.binaryType = "arraybuffer";
     socket.onmessage = ({ data }) =>
-      typeof data === "string" ? this.#receiveMessage(JSON.parse(data)) : this.#receiveFrame(data);
+      typeof data === "string" ? this.#receiveMessage(JSON.parse(data)) : this.#receiveBinary(data);
     socket.onclose = (event) => this.#handleClose(event);
     return socket;
   }
@@ -135,6 +137,23 @@ export class Connection extends Events {
         waiting?.resolve(message);
       }
     }
+  }
+
+  /** @param {ArrayBuffer} data */ #receiveBinary(data) {
+    if (!isPart(data)) {
+      this.#receiveFrame(data);
+      return;
+    }
+    const waiting = this.pending.get(this.#part);
+    this.pending.delete(this.#part);
+    const part = new Uint8Array(data, PART_HEADER);
+    waiting?.resolve(/** @type {Answer} */ (/** @type {unknown} */ ({ part })));
+  }
+
+  /** A part of the files that were saved last; one at a time. @param {number} offset */ async part(offset) {
+    const answer = this.request("part", { offset });
+    this.#part = this.#number;
+    return (await answer).part;
   }
 
   /** @param {ArrayBuffer} data */ #receiveFrame(data) {

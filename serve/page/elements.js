@@ -36,6 +36,13 @@ export function element(tag, properties = {}, ...children) {
   return made;
 }
 
+/** Make an element of a drawing. @param {string} tag @param {Record<string, string | number>} attributes */
+export function svgElement(tag, attributes) {
+  const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, String(value));
+  return made;
+}
+
 /** @param {Element} parent @param {string} label @param {() => void} onclick */
 export function makeButton(parent, label, onclick, title = "") {
   const made = element("button", { type: "button", textContent: label, title, onclick });

@@ -7,10 +7,11 @@ const DEAD_ZONE = 0.15; // of the sticks of a gamepad
 /** @typedef {Record<string, [number, number]>} Ways axis and sign by the code of a key */
 
 /** @type {Ways} */
-const MOVES = { KeyD: [0, 1], KeyA: [0, -1], KeyE: [1, 1], KeyQ: [1, -1], KeyW: [2, 1], KeyS: [2, -1] };
+const MOVES = { KeyD: [0, 1], KeyA: [0, -1], KeyE: [1, 1], Space: [1, 1], KeyQ: [1, -1], KeyW: [2, 1], KeyS: [2, -1] };
 /** @type {Ways} */ const TURNS = { ArrowRight: [0, 1], ArrowLeft: [0, -1], ArrowUp: [1, 1], ArrowDown: [1, -1] };
 /** @type {Record<string, number>} */ const DOLLIES = { Equal: -1, NumpadAdd: -1, Minus: 1, NumpadSubtract: 1 };
 const TYPES_TEXT = "select, dialog, input:is([type=text], [type=number], [type=password])";
+const USES_SPACE = "button, summary, input, a";
 const USES_ARROWS = `${TYPES_TEXT}, input, [role=toolbar]`;
 
 /** @import { Commands } from "./tools.js" */
@@ -49,6 +50,7 @@ export class Flight {
     const { code } = event;
     const focused = event.target instanceof Element ? event.target : null;
     if (event.ctrlKey || event.metaKey || focused?.closest(TYPES_TEXT)) return;
+    if (code === "Space" && focused?.closest(USES_SPACE)) return;
     // Arrows belong to the slider or the group of buttons that has the focus.
     if (code in TURNS && focused?.closest(USES_ARROWS)) return;
     if (code in MOVES || code in TURNS || code in DOLLIES) {
@@ -60,33 +62,50 @@ export class Flight {
     }
   }
 
+  /** Whether the key for it is held. */
+  get fast() {
+    return this.#modifiers.shiftKey;
+  }
+
+  /** How far keys and gamepads go: right, up, forward, each about -1 … 1. */
+  going() {
+    const going = [0, 0, 0];
+    for (const code of this.#held) if (code in MOVES) going[MOVES[code][0]] += MOVES[code][1];
+    for (const gamepad of gamepads()) {
+      going[0] += stick(gamepad, 0);
+      going[2] -= stick(gamepad, 1);
+      going[1] += trigger(gamepad, 7) - trigger(gamepad, 6);
+    }
+    return going;
+  }
+
   /** Called once per frame of the screen. */
   step() {
     const now = performance.now();
     const seconds = Math.min(0.1, (now - this.#last) / 1000);
     this.#last = now;
-    const going = [0, 0, 0];
+    const going = this.going();
     const turning = [0, 0];
     let dollying = 0;
     for (const code of this.#held) {
-      if (code in MOVES) going[MOVES[code][0]] += MOVES[code][1];
       if (code in TURNS) turning[TURNS[code][0]] += TURNS[code][1];
       if (code in DOLLIES) dollying += DOLLIES[code];
     }
-    for (const gamepad of navigator.getGamepads?.() ?? []) {
-      if (!gamepad) continue;
-      /** @param {number} axis */
-      const stick = (axis) => (Math.abs(gamepad.axes[axis] ?? 0) > DEAD_ZONE ? gamepad.axes[axis] : 0);
-      /** @param {number} button */ const trigger = (button) => gamepad.buttons[button]?.value ?? 0;
-      going[0] += stick(0);
-      going[2] -= stick(1);
-      going[1] += trigger(7) - trigger(6);
-      turning[0] += stick(2);
-      turning[1] -= stick(3);
+    for (const gamepad of gamepads()) {
+      turning[0] += stick(gamepad, 2);
+      turning[1] -= stick(gamepad, 3);
     }
-    const speed = SPEED * seconds * (this.#modifiers.shiftKey ? 3 : 1) * (this.#modifiers.altKey ? 0.2 : 1);
+    const speed = SPEED * seconds * (this.fast ? 3 : 1) * (this.#modifiers.altKey ? 0.2 : 1);
     if (going.some(Boolean)) this.actions.fly(going[0] * speed, going[1] * speed, going[2] * speed);
     if (turning.some(Boolean)) this.actions.rotate(turning[0] * TURN * seconds, turning[1] * TURN * seconds);
     if (dollying) this.actions.dolly(Math.exp(dollying * DOLLY * seconds));
   }
 }
+
+const gamepads = () => (navigator.getGamepads?.() ?? []).filter((gamepad) => gamepad !== null);
+
+/** @param {Gamepad} gamepad @param {number} axis */
+const stick = ({ axes }, axis) => (Math.abs(axes[axis] ?? 0) > DEAD_ZONE ? axes[axis] : 0);
+
+/** @param {Gamepad} gamepad @param {number} button */ const trigger = ({ buttons }, button) =>
+  buttons[button]?.value ?? 0;

@@ -17,6 +17,7 @@ export class Gestures {
   #done = { x: 0, y: 0, spread: 0 };
   /** @type {Place | null} where the only pointer was pressed */ #began = null;
   /** @type {(Place & { time: number }) | null} the last one */ #tap = null;
+  turning = 0; // the button of a mouse whose drag turns; others pan
 
   /** @param {HTMLCanvasElement} canvas @param {Actions} actions */ constructor(canvas, actions) {
     this.canvas = canvas;
@@ -44,7 +45,8 @@ export class Gestures {
   /** @param {PointerEvent} event */ begin(event) {
     this.canvas.focus();
     this.canvas.setPointerCapture(event.pointerId);
-    const pans = event.button !== 0 || event.shiftKey || event.ctrlKey || event.metaKey;
+    const turning = event.pointerType === "touch" ? 0 : this.turning;
+    const pans = event.button !== turning || event.shiftKey || event.ctrlKey || event.metaKey;
     this.step();
     this.pointers.set(event.pointerId, { x: event.clientX, y: event.clientY, pans });
     this.#done = this.place();

@@ -14,7 +14,8 @@ import { scale } from "./vectors.js";
  * Size, side: () => number, bounds: () => Box, limit: () => number, change: (how: Move) => void, glide: (how: Move)
  * => void }} Page */
 
-const flies = () => isPressed($("fly"));
+const MODES = /** @type {const} */ (["orbit", "fly", "walk"]);
+/** Whether turns are those of the eye. */ const flies = () => !isPressed($("orbit"));
 /** @param {Pose} view */ const mirrored = ({ flipX, flipY }) => [flipX ? -1 : 1, flipY ? -1 : 1];
 
 /** `focus` is for a double click at a place of the page. Returns what has a step() for each frame of the screen.
@@ -41,11 +42,13 @@ export function makePilot(app, canvas, commands, focus) {
   });
   const flight = new Flight($("pad"), {
     commands,
-    fly: (right, up, forward) =>
+    fly: (right, up, forward) => {
+      if ($("walk") && isPressed($("walk"))) return; // walker.js
       app.change((now) => {
         const [x, y] = mirrored(now);
         return fly(now, scale([right * x, up * y, forward], app.side()), app.limit());
-      }),
+      });
+    },
     rotate: (right, up) =>
       app.change((now) =>
         flies()
@@ -54,13 +57,12 @@ export function makePilot(app, canvas, commands, focus) {
       ),
     dolly: (factor) => app.change((now) => dolly(now, factor, app.limit())),
   });
-  $("fly").onclick = () => setFlying(true);
-  $("orbit").onclick = () => setFlying(false);
+  $("fly").onclick = () => setMode("fly");
+  $("orbit").onclick = () => setMode("orbit");
   return { gestures, flight };
 }
 
-/** @param {boolean} on */ function setFlying(on) {
-  pressed($("fly"), on);
-  pressed($("orbit"), !on);
-  $("pad").hidden = !on || !matchMedia("(pointer: coarse)").matches;
+/** @param {typeof MODES[number]} mode */ export function setMode(mode) {
+  for (const one of MODES) if ($(one)) pressed($(one), one === mode);
+  $("pad").hidden = mode === "orbit" || !matchMedia("(pointer: coarse)").matches;
 }

@@ -4,6 +4,7 @@
 
 export const PROTOCOL = 2;
 const HEADER = 56;
+export const PART_HEADER = 16;
 /** @typedef {{ name: string, size: Size, width_step: number, position_limit: number, features: string[],
  * pixels?: number, smooth?: number }} Device */
 
@@ -11,7 +12,7 @@ const HEADER = 56;
  * chunk: number, upload: number } }} Hello */
 
 /** @typedef {{ number: number, name: string, depth: number, words: number, bounds: Box | null, camera: Registers,
- * size: Size, frames?: number, period?: number | null }} Scene */
+ * size: Size, frames?: number, period?: number | null, warnings?: string[], edits?: { undo: number, redo: number } }} Scene */
 
 /** @typedef {Look & { camera: Registers, size: Size, nonstop: boolean, frame: number }} View */
 
@@ -24,6 +25,10 @@ const HEADER = 56;
 
 /** @typedef {{ stage: string, done: number, total: number }} Progress of a scene that is loaded */
 /** @param {bigint} count */ const counter = (count) => (count === 0xffffffffffffffffn ? null : Number(count));
+
+/** Whether a binary message is a part of saved files. @param {ArrayBuffer} data */
+export const isPart = (data) =>
+  data.byteLength > PART_HEADER && String.fromCharCode(...new Uint8Array(data, 0, 4)) === "VXCH";
 
 /** Read a frame with its pixels, RGB; null where the message is none. @param {ArrayBuffer} data */
 export function readFrame(data) {

@@ -1,7 +1,7 @@
 // The scenes: those of the server, and files that are opened or dropped. Loading shows its progress and can be cancelled.
 
 import { acceptFiles } from "./drop.js";
-import { $, all, makeButton, makeToolbar, pressed } from "./elements.js";
+import { $, all, element, makeButton, makeToolbar, pressed } from "./elements.js";
 import { dismiss, notice } from "./notices.js";
 import { uploadFiles } from "./upload.js";
 
@@ -49,6 +49,7 @@ export class Scenes {
     for (const made of all("[data-scene]")) pressed(made, made.dataset.scene === scene.name);
     $("empty").hidden = scene.number !== 0;
     $("stage").classList.toggle("empty", scene.number === 0);
+    $("warnings").replaceChildren(...(scene.warnings ?? []).map((text) => element("li", {}, text)));
   }
 
   /** Show a scene of the server. @param {string} name */ request(name) {

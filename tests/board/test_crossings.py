@@ -64,7 +64,7 @@ def test_a_self_test_crosses_as_listed(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", build.board_names())
+@pytest.mark.parametrize("name", build.selftest_names())
 @pytest.mark.parametrize("selftest", [False, True])
 def test_a_design_crosses_as_listed(name, selftest, tmp_path):
     board = build.read_board(name)

@@ -5,6 +5,7 @@ The pictures are those of the exact model. The protocol is that of fakes/board_h
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ import pytest
 from fakes.board_host import Host, cameras_around, picture
 from oracles.verilator import needs_compiled_verilator
 
+from voxrt.board.designs import serial_device
 from voxrt.board.designs.boot_table import (
     BOARD_REGISTERS,
     CAMERAS,
@@ -26,10 +28,16 @@ from voxrt.board.designs.boot_table import (
     scene_writes,
 )
 from voxrt.board.designs.build import clock_hz, read_board
+from voxrt.board.designs.serial_device import SerialDevice
+from voxrt.board.designs.serial_link import SerialLink
 from voxrt.board.designs.simulation.board_simulation import BoardSimulation, compile_sources
+from voxrt.board.edited_scene import rom_of
 from voxrt.board.register_writes import camera_writes
+from voxrt.board.scene_memory import SceneMemory
+from voxrt.board.simulated.model import ModelDevice
 from voxrt.board.view import Lighting
 from voxrt.boards.board_scenes import load_scene
+from voxrt.octree import Box, Sphere, World
 from voxrt.octree.camera import look_at
 from voxrt.octree.words import move_pointers
 
@@ -104,6 +112,58 @@ def test_a_scene_is_swapped_between_two_frames(program, scenes, tmp_path):
         assert np.array_equal(after, picture(new, camera, SCALE))
         assert host.register("play") >> 31 == 0
         assert host.register("refused") == 0
+
+
+class SimulatedPort:
+    """The serial port of the driver, at a simulated board."""
+
+    def __init__(self, board):
+        self.board, self.answer = board, b""
+
+    def write(self, data):
+        self.board.send(data)
+
+    def read(self, count):
+        quiet = 0
+        while len(self.answer) < count and quiet < 60:  # a request takes 86,000 clocks
+            self.board.run(2000)
+            came = self.board.received()
+            quiet = 0 if came else quiet + 1
+            self.answer += came
+        found, self.answer = self.answer[:count], self.answer[count:]
+        return found
+
+
+@pytest.mark.slow
+def test_edits_by_the_serial_line_show_between_two_frames(program, scenes, tmp_path, monkeypatch):
+    """The driver edits the running board; every picture is that of the world before or after an edit."""
+    monkeypatch.setattr(serial_device, "_WAIT_SECONDS", 600.0)  # a simulated frame takes a second and more
+    scene = scenes[0]
+    cameras = cameras_of(scene, SIZE)
+    with BoardSimulation(program, tmp_path, contents_of(scene, cameras, control=RUN)) as board:
+        board.run(20_000)
+        device = SerialDevice(SerialLink("the simulation", SimulatedPort(board)), ModelDevice())
+        memory, world = SceneMemory(device, device.loaded()), World(rom_of(scene))
+        memory.begin_edits(world, scene)
+        seen = picture(scene, cameras[0], SCALE)
+        changes = 0
+        for edit in (
+            lambda: world.set([[6, height, 27] for height in range(32)], 1),
+            lambda: world.fill(Box((0, 20, 0), (20, 22, 32)), 2),
+            lambda: world.fill(Sphere((16, 16, 16), 12), 0),
+            world.undo,
+            lambda: world.set([[26, 20, 26], [26, 21, 26], [27, 20, 26]], 1),
+        ):
+            before = seen
+            edit()
+            memory.show_edits(scene)
+            seen = picture(replace(scene, words=world.rom().octree.words), cameras[0], SCALE)
+            during, after = (pixels for pixels, _ in board.frames(2))
+            assert any(np.array_equal(during, one) for one in (before, seen))
+            assert np.array_equal(after, seen)
+            changes += not np.array_equal(before, seen)
+        assert changes >= 3
+        assert Host(board).register("refused") == 0
 
 
 def test_noise_and_broken_requests_do_nothing(program, scenes, tmp_path):

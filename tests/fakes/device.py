@@ -10,6 +10,7 @@ import pytest
 
 from voxrt.board.device import Counters, Frame, Identity
 from voxrt.board.errors import DeviceError, FrameDropped, TooSlow
+from voxrt.board.patch_writes import write_patch
 from voxrt.board.scene import Scene
 from voxrt.sim import SimulatorError
 
@@ -93,6 +94,9 @@ class FakeDevice:
     def select_scene(self, root, depth):
         self.calls.append("select_scene")
         self.root, self.depth = root, depth
+
+    def apply_patch(self, patch, depth):
+        write_patch(self, patch, depth)
 
     def octree(self):
         """The material of every leaf that the root reaches, by its path of octants."""

@@ -21,8 +21,8 @@ from pathlib import Path
 import numpy as np
 
 from voxrt import voxelize
+from voxrt.voxelize.formats.reader_process.limits import Limits
 from voxrt.voxelize.formats.usd.isolated import read_isolated
-from voxrt.voxelize.formats.usd.limits import Limits
 
 ROOT = Path(__file__).resolve().parents[2]
 _LARGEST_SEED = 64 << 10

@@ -16,9 +16,9 @@ import pytest
 from voxrt import voxelize
 from voxrt.voxelize import AssetError
 from voxrt.voxelize.formats import scene_message
+from voxrt.voxelize.formats.reader_process.limits import Limits
 from voxrt.voxelize.formats.usd import isolated
 from voxrt.voxelize.formats.usd.isolated import read_isolated
-from voxrt.voxelize.formats.usd.limits import Limits
 from voxrt.voxelize.warning_log import WarningLog
 
 SMALL = Limits(memory=1 << 30, most_memory=1 << 30, seconds=4)

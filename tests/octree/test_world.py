@@ -128,7 +128,15 @@ def test_random_edits_of_small_worlds_are_canonical_after_each(depth, steps):
         model.check_device()
 
 
-@pytest.mark.parametrize(("depth", "steps"), [(4, 1000), (5, 600), (6, 200)])
+LONG = 6250
+"""Operations of a world that is edited for long: 100,000 in worlds of depths 1 to 16."""
+
+
+def long(depths):
+    return [pytest.param(depth, LONG, marks=pytest.mark.slow) for depth in depths]
+
+
+@pytest.mark.parametrize(("depth", "steps"), [(4, 1000), (5, 600), (6, 200), *long(range(1, 7))])
 def test_random_edits_are_those_of_an_array(depth, steps):
     rng = np.random.default_rng(depth)
     model = Model(np.zeros((1 << depth,) * 3, np.uint8), rng)
@@ -139,31 +147,40 @@ def test_random_edits_are_those_of_an_array(depth, steps):
             model.check_device()
 
 
-@pytest.mark.parametrize("depth", [7, 10, 12, 14, 16])
-def test_random_voxels_of_large_worlds_are_those_of_a_dictionary(depth):
+@pytest.mark.parametrize(("depth", "steps"), [*((depth, 60) for depth in (7, 10, 12, 14, 16)), *long(range(7, 17))])
+def test_random_voxels_of_large_worlds_are_those_of_a_dictionary(depth, steps):
     rng = np.random.default_rng(depth)
-    side, voxels = 1 << depth, {}
+    side, voxels, history = 1 << depth, {(0, 0, 0): 1}, []
     world = world_of(octree.from_points([[0, 0, 0]], [1], depth=depth), undo_steps=3)
-    voxels[0, 0, 0] = 1
-    for _ in range(60):
-        middle = rng.integers(0, side, 3)
-        points = np.clip(middle + rng.integers(-4, 5, (rng.integers(1, 30), 3)), 0, side - 1)
-        if rng.random() < 0.3:
-            radius = rng.integers(0, 50) / 16
-            world.fill(Sphere(middle, radius), 3)
-            near = np.clip(middle + np.indices((9, 9, 9)).reshape(3, -1).T - 4, 0, side - 1)
-            points = near[((near + 0.5 - middle) ** 2).sum(axis=1) <= radius**2]
-            ids = np.full(len(points), 3)
+    for step in range(1, steps + 1):
+        if history and rng.random() < 0.1:
+            assert world.undo()
+            voxels |= history.pop()
         else:
-            ids = rng.integers(0, 4, len(points))
-            world.set(points, ids)
-        for point, material in zip(points.tolist(), ids.tolist(), strict=True):
-            voxels[tuple(point)] = material
+            middle = rng.integers(0, side, 3)
+            points = np.clip(middle + rng.integers(-4, 5, (rng.integers(1, 30), 3)), 0, side - 1)
+            known = world.steps[0]
+            if rng.random() < 0.3:
+                radius = rng.integers(0, 50) / 16
+                near = np.clip(middle + np.indices((9, 9, 9)).reshape(3, -1).T - 4, 0, side - 1)
+                points = near[((near + 0.5 - middle) ** 2).sum(axis=1) <= radius**2]
+                ids = [3] * len(points)
+                world.fill(Sphere(middle, radius), 3)
+            else:
+                ids = rng.integers(0, 4, len(points)).tolist()
+                world.set(points, ids)
+            after = dict(zip(map(tuple, points.tolist()), ids, strict=True))
+            before = {point: voxels.get(point, 0) for point in after}
+            if after != before:
+                history = [*history, before][-3:]
+            assert world.steps[0] == len(history) >= known - (known == 3)
+            voxels |= after
         world._native.check()
-    solid = {point: material for point, material in voxels.items() if material}
-    expected = octree.from_points(list(solid), list(solid.values()), depth=depth)
-    np.testing.assert_array_equal(world.rom().octree.words, expected.words)
-    np.testing.assert_array_equal(world.material_at(list(voxels)), list(voxels.values()))
+        if step % 1000 == 0 or step == steps:
+            solid = {point: material for point, material in voxels.items() if material}
+            expected = octree.from_points(list(solid), list(solid.values()), depth=depth)
+            np.testing.assert_array_equal(world.rom().octree.words, expected.words)
+            np.testing.assert_array_equal(world.material_at(list(voxels)), list(voxels.values()))
 
 
 def test_a_voxel_takes_one_block_per_level_and_old_roots_stay():

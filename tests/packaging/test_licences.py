@@ -19,6 +19,7 @@ SAID = {
     "MIT-CMU": ("MIT-CMU", "HPND"),
     "TOST-1.0": ("TOST", "Other/Proprietary License"),
     "ISC": ("ISC",),
+    "GPL-3.0": ("GPL",),
     "Matplotlib": ("matplotlib",),
     "LGPL-3.0-only": ("Apache-2.0", "LGPL"),
 }

@@ -15,7 +15,7 @@ import voxrt
 
 ROOT = Path(__file__).resolve().parents[2]
 NAME = "voxrt-build"
-EXTRAS = {"cad", "scan", "view", "compare", "fpga", "cluster"}
+EXTRAS = {"blender", "cad", "scan", "view", "compare", "fpga", "cluster"}
 TEXTS = {".py", ".md", ".rst", ".toml", ".yml", ".yaml", ".txt", ".html", ".js", ".cpp", ".h", ".sv", ".cmake", ".sh"}
 OWN_FOLDERS = ("voxrt", "voxelize", "octree", "export", "rtl", "sim", "view", "board", "serve", "web", "tests", "bench")
 

@@ -21,7 +21,7 @@ RANGES = {
         "MaxDepth": ((2, 16), (1, 17)),
         "PositionBits": ((6, 32), (5, 33)),
         "BlockBits": ((5, 24), (4, 25)),
-        "RayClocks": ((1, 4), (0, 2, 3, 5)),
+        "RayClocks": ((1, 4, 8), (0, 2, 3, 5, 7)),
         "MemoryForm": ((0, 2), (3,)),
     },
     "voxrt_axi_read_master": {"UnderWay": ((2, 256), (1, 6, 512)), "TimeoutBits": ((1, 32), (0, 33))},
@@ -72,7 +72,7 @@ RANGES = {
     "board_clock_meter": {"WindowBits": ((8, 28), (7, 29)), "StepBits": ((1, 16), (0, 17))},
     "board_event": {"Width": ((1,), (0,))},
     "board_frames": {"ClockHz": ((1,), (0,)), "LineBits": ((4, 7), (3, 8))},
-    "board_line_buffer": {"LineBits": ((4, 7), (3, 8))},
+    "board_line_buffer": {"LineBits": ((4, 7), (3, 8)), "ColumnBits": ((9, 10), (8, 11))},
     "board_memory_port": {"Lines": ((2, 1_048_576), (1, 1_048_577))},
     "board_pll": {
         "InputDivider": ((1, 128), (0, 129)),
@@ -97,11 +97,15 @@ RANGES = {
     "ecp5_selftest_sdram": {"Leds": ((1, 8), (0, 9)), "Highs": ((1,), (0,))},
     "ecp5_top": {"Leds": ((1, 8), (0, 9)), "Highs": ((1,), (0,))},
     "ecp5_top_sdram": {"Leds": ((1, 8), (0, 9)), "Highs": ((1,), (0,))},
+    "gowin_clocks": {"SystemDivider": ((10, 12, 14, 16, 18, 20, 21, 24), (9, 11, 13, 22, 28))},
+    "gowin_serializer": {"Channels": ((1,), (0,))},
+    "gowin_top": {"Leds": ((1, 8), (0, 9)), "Buttons": ((1, 3), (0, 4))},
 }
 
 
 def sources() -> list[Path]:
-    lists = ((RTL, "voxrt.f"), (DESIGNS, "ecp5.f"), (DESIGNS, "ecp5_sdram.f"), (DESIGNS, "ecp5_selftest.f"))
+    names = ("ecp5.f", "ecp5_sdram.f", "gowin.f", "ecp5_selftest.f")
+    lists = ((RTL, "voxrt.f"), *((DESIGNS, name) for name in names))
     named = [
         folder / line
         for folder, name in lists

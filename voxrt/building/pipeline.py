@@ -41,6 +41,7 @@ def build(
     progress: Callable[[str], None] | None = None,
     estimated: Callable[[BuildEstimate], None] | None = None,
     clustered: Callable[[ClusterProgress], None] | None = None,
+    rendered: Callable[[int, int], None] | None = None,
     **keywords: Unpack[BuildKeywords],
 ) -> BuildResult:
     """Build the octree memory of an asset, and write it with its manifest and its preview.
@@ -48,8 +49,8 @@ def build(
     Parameters
     ----------
     asset
-        A glTF, OBJ, USD, STL or PLY file, or a scene of some (.toml); a mesh or a scene of trimesh; vertices and faces
-        as arrays, ``(vertices, faces)``; a :class:`Scene`.
+        A glTF, Blender, OBJ, USD, STL or PLY file, or a scene of some (.toml); a mesh or a scene of trimesh; vertices
+        and faces as arrays, ``(vertices, faces)``; a :class:`Scene`.
     output
         Folder for ``NAME.mem`` and ``NAME.json``, where NAME is the name of the file or of the scene; or the file of
         words itself, such as ``yard.mem`` or ``yard.coe``. Folders are made if they are missing. None writes neither.
@@ -61,6 +62,8 @@ def build(
         Called with what the build will take, once the scene is loaded and its grid is known.
     clustered
         Called with how far a cluster is, as tiles are finished.
+    rendered
+        Called with the rows of the preview that are done, and with all of them.
     **keywords
         The options of :class:`BuildOptions` by name. They take precedence over `options`.
 
@@ -113,7 +116,7 @@ def build(
         result = with_view(result, options)
         source.refuse_warnings(result.warnings)
         result = replace(result, source=export.Source(files.source, named_settings(options)))
-        result, error = write_result(files, result, options, clock)
+        result, error = write_result(files, result, options, clock, rendered)
     if error is not None:
         raise error
     if result.preview is not None:  # what programs read keeps its order

@@ -51,9 +51,10 @@ def with_view(result: BuildResult, options: BuildOptions) -> BuildResult:
     return replace(result, view=view, lighting=lighting, warnings=(*result.warnings, *unseen))
 
 
-def preview(result: BuildResult, options: BuildOptions) -> Picture:
+def preview(result: BuildResult, options: BuildOptions, progress: Callable[[int, int], None] | None = None) -> Picture:
     """Render the preview of a build: of an animation the first frame.
 
+    `progress` is called with the rows that are done and with all rows.
     SimulatorError if the engine cannot hold the memory, the camera or the light; ViewpointError if there is no camera
     for a picture of this size.
     """
@@ -67,6 +68,7 @@ def preview(result: BuildResult, options: BuildOptions) -> Picture:
         samples=options.samples,
         background=options.background,
         threads=options.threads,
+        progress=progress,
     )
 
 

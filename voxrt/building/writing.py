@@ -16,6 +16,7 @@ from voxrt.sim import SimulatorError
 from voxrt.views.viewpoint import ViewpointError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
     from voxrt.building.output_files import OutputFiles
@@ -43,10 +44,15 @@ def named_settings(options: BuildOptions) -> dict[str, str | int | float | bool 
 
 
 def write_result(
-    files: OutputFiles, result: BuildResult, options: BuildOptions, clock: StageClock
+    files: OutputFiles,
+    result: BuildResult,
+    options: BuildOptions,
+    clock: StageClock,
+    rendered: Callable[[int, int], None] | None,
 ) -> tuple[BuildResult, Exception | None]:
     """Render the preview of a build and write its files, all of them or none, in the stages "preview" and "write".
 
+    `rendered` is called with the rows of the preview that are done and with all rows.
     Returns the result with its preview and its outputs, and the error why there is no preview. The memory is sound
     then, so it is written, and an older preview is removed. OutputError if a file cannot be written: old files stay as
     they were.
@@ -55,7 +61,7 @@ def write_result(
     if files.preview is not None:
         with clock.stage("preview"):
             try:
-                result = replace(result, preview=preview(result, options))
+                result = replace(result, preview=preview(result, options, rendered))
             except (SimulatorError, ViewpointError) as problem:
                 error = problem
     with clock.stage("write"):

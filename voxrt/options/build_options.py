@@ -104,7 +104,7 @@ class BuildOptions:
         "Metres per unit of an asset whose format does not state it (OBJ, STL, PLY). The default is 1.",
         details="On the command line also the name of the unit: mm, cm, m, in or ft.", manifest="always")
     time: float | None = option(real("SECONDS"), None, CONTENT,
-        "Second of the animation at which the asset is built (glTF, USD).", is_rare=True, manifest="always")
+        "Second of the animation at which the asset is built (glTF, USD, Blender).", is_rare=True, manifest="always")
     animation: str | None = option(text("NAME"), None, CONTENT,
         "The animation to use, by name or by number, counted from 0 (glTF). The default is the first.",
         is_rare=True, manifest="always")

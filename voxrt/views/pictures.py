@@ -141,9 +141,11 @@ def preview(
     samples: int | None = None,
     background: Background | str | None = None,
     threads: int = 0,
+    progress: Callable[[int, int], None] | None = None,
 ) -> Picture:
     """Render a memory as it is best seen: lit as its author says, smooth if the model does it, on a light background.
 
+    `progress` is called with the rows that are done and with all rows.
     SimulatorError if the engine cannot hold the memory, the camera or the light.
 
     Examples
@@ -164,6 +166,7 @@ def preview(
         samples=samples or (1 if engine == "rtl" else _SAMPLES),
         background=background or (None if has_background else BACKGROUNDS["light"]),
         threads=threads,
+        progress=progress,
     )
     return Picture(frame, camera, engine)
 

@@ -156,7 +156,8 @@ def authored_camera(viewpoint: Viewpoint, grid: Grid, size: tuple[int, int]) -> 
         wanted["field_of_view"] = float(np.degrees(2 * np.arctan(height * min(size) / size[1] / 2)))
     up = _upright(_unit(target - eye, "the line of sight")) if viewpoint.up is None else np.array(viewpoint.up)
     try:
-        return look_at(eye, target, size=size, up=up, **wanted)
+        shift = np.array(viewpoint.shift) * size[1]
+        return look_at(eye, target, size=size, up=up, shift=shift, **wanted)
     except ValueError as error:
         raise ViewpointError(f"the scene's camera: {error}") from error
 

@@ -16,7 +16,7 @@ import { voxelize } from "./voxelize.js";
 export * from "./scene_format.js";
 export { VoxrtError };
 
-/** @import { Built, Options, Scene, Triple } from "./scene_format.js" */
+/** @import { Built, Options, Scene, Triple } from "./scene_format.js" @import { Patch } from "./world.js" */
 
 /** The camera registers: direction(column, row) = look + right (column - W/2) + up (H/2 - row). `position`: in 1/16
  * voxel; `look`: whole numbers below 2^15, as those of right and up. @typedef {{ position: Triple, look: Triple,
@@ -72,6 +72,15 @@ export class Voxrt extends Instance {
   setMemory(words, depth) {
     this.guard(() =>
       this.with([Uint32Array], [words], (at) => this.checked(this.wasm.vx_memory(at, words.length, depth))),
+    );
+  }
+
+  /** Write a patch of World.commit() into the memory, whose voxels then are those of the commit. @param {Patch} patch */
+  applyPatch({ root, rootWord, addresses, blocks }) {
+    this.guard(() =>
+      this.with([Uint32Array, Uint32Array], [addresses, blocks], (places, words) =>
+        this.checked(this.wasm.vx_patch(places, words, addresses.length, root, rootWord)),
+      ),
     );
   }
 

@@ -19,7 +19,8 @@ import { Painter } from "./painter.js";
 import { scale } from "./vectors.js";
 import { Viewpoint } from "./viewpoint.js";
 import { Views } from "./views.js";
-/** @import { Pose, Size } from "./camera.js" @import { Look } from "./light.js" */
+/** @import { BandFrame } from "./band_picture.js" @import { Pose, Size } from "./camera.js" */
+/** @import { Look } from "./light.js" */
 /** @import { Memory, Shown } from "./memory.js" @import { Source } from "./sources.js" */
 /** @import { Move } from "./viewpoint.js" */
 
@@ -31,6 +32,8 @@ export class App {
   /** @type {Shown | null} */ #memory = null;
   #poseDepth = 7; // levels of the memory to which the pose belongs
   /** @type {Source | null} */ source = null;
+  /** @type {{ frame: BandFrame, samples: number } | null} the picture */ newest = null;
+  /** @type {{ settle: () => Promise<void>, memoryChanged: () => void } | null} */ editing = null;
   /** @type {Look} */ #look = FIRST_LOOK;
 
   /** @param {WebAssembly.Module} module voxrt.wasm @param {Site} site */ constructor(module, site) {
@@ -49,6 +52,7 @@ export class App {
     this.painter.on("frame", (bands) => {
       const samples = this.frames.receive(bands);
       this.picture.showBands(bands, samples);
+      this.newest = { frame: bands, samples };
       this.figures.add(bands, samples);
       const shownCamera = () => this.frames.registers(/** @type {Pose} */ (this.view()), this.#shownSize());
       const colours = () => coloursOf(bands);
@@ -59,6 +63,12 @@ export class App {
 
   /** The memory that is shown, once there is one. */
   memory = () => this.#memory;
+
+  /** The same, with all edits. */
+  async settled() {
+    await this.editing?.settle();
+    return this.#memory;
+  }
 
   #shown() {
     if (!this.#memory) throw new Error("no memory is shown");
@@ -73,6 +83,8 @@ export class App {
   side = () => 2 ** this.#shown().depth;
   bounds = () => this.#shown().bounds;
   limit = () => limitOf(this.#shown());
+  /** Whether voxels change pixels of others. */
+  isLit = () => this.#shading().light !== null || this.#shading().bounces > 0;
   #shading = () => shadingOf(this.#shown(), this.#look);
 
   /** How hits are coloured, without light and mirrors. */
@@ -93,6 +105,18 @@ export class App {
     this.painter.shade(this.#shading());
     this.#showLook();
     this.frames.change();
+  }
+
+  /** Give the workers other words of the same voxels. @param {Uint32Array} words */ async showWords(words) {
+    await this.painter.load({ ...this.#shown(), words }, this.#shading());
+    this.frames.change();
+  }
+
+  /** Pictures show this memory already. @param {Shown} memory */ revise(memory) {
+    const { materials } = this.#shown();
+    this.#memory = memory;
+    if (materials !== memory.materials) this.painter.shade(this.#shading());
+    this.panel.show(memory);
   }
 
   #showLook() {
@@ -133,6 +157,7 @@ export class App {
     this.#look = nextLook(this.#look, memory, old, first);
     this.#memory = memory;
     this.inspector.clear();
+    this.editing?.memoryChanged();
     await this.painter.load(memory, this.#shading());
     const { voxels, outline } = await this.painter.census();
     if (this.#memory !== memory) return;

@@ -24,7 +24,7 @@ export class BoardPanel {
 
   /** @param {string} board */ async #make(board) {
     this.#hand?.stop();
-    const memory = this.app.memory();
+    const memory = await this.app.settled();
     if (!memory) return;
     const { name, words, depth, materials, lighting } = memory;
     /** @type {Hand<BoardCalls>} */ const hand = new Hand("./board_worker.js");

@@ -50,6 +50,6 @@ export class BuildNotice {
   /** The bar never ends before the build. */
   #move() {
     const seconds = (performance.now() - this.#since) / 1000;
-    part($("notice"), "progress").value = seconds / Math.max(this.stage?.seconds ?? 0, 1.05 * seconds);
+    part($("notice"), "progress").value = seconds / Math.max(this.stage?.seconds ?? 0, 1.05 * seconds, 0.001);
   }
 }

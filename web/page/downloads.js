@@ -8,7 +8,7 @@ import { DIALECT, hex } from "./voxrt/words.js";
 /** The manifest as voxrt build writes it (export/manifest.py), or that of the memory. @param {Shown} memory */
 export function manifestOf(memory) {
   const { name, file, words, depth, materials, grid, objects, warnings } = memory;
-  const { seconds, fill, rule, up, unit, lighting, baked, voxels } = memory;
+  const { seconds, fill, rule, up, unit, lighting, baked, voxels, view, edited } = memory;
   const crc = hex(crc32(memBytes(words)));
   if (memory.manifest) return { ...memory.manifest, crc32: crc };
   const { wordsBefore: _before, words: _words, ...light } = baked ?? {};
@@ -26,8 +26,10 @@ export function manifestOf(memory) {
     objects: objects.map((object) => ({ source: "mesh", moved: [0, 0, 0], grown: [0, 0, 0], ...object })),
     warnings,
     seconds: { build: seconds ?? 0 },
-    source: { file, settings: { fill: fill ?? null, rule: rule ?? null, up: up ?? null, unit: unit ?? null } },
-    view: null,
+    source: edited
+      ? null
+      : { file, settings: { fill: fill ?? null, rule: rule ?? null, up: up ?? null, unit: unit ?? null } },
+    view: view ?? null,
     lighting: lighting ?? null,
     animation: null,
     baked: baked ? { ...light, words_before: baked.wordsBefore, words: baked.words } : null,

@@ -19,7 +19,7 @@ export class HardwarePanel {
   }
 
   async #run() {
-    const [memory, view] = [this.app.memory(), this.app.view()];
+    const [memory, view] = [await this.app.settled(), this.app.view()];
     if (!memory || !view) return;
     /** @type {Hand<HardwareCalls>} */ const hand = new Hand("./hardware_worker.js");
     this.#hand = hand;

@@ -1,14 +1,12 @@
 // The way of one pixel's ray through the octree: a table of the words that it reads, and their octants over the picture.
 
-import { $, element } from "./elements.js";
-import { dot, subtract } from "./vectors.js";
+import { $, element, svgElement } from "./elements.js";
+import { BOX_EDGES, cornersOf, projection } from "./projection.js";
 import { hex, isLeaf, material, octant } from "./voxrt/words.js";
 /** @import { App } from "./app.js" @import { Registers, Size } from "./camera.js" */
-/** @import { Vector } from "./vectors.js" @import { Followed, Reading } from "./voxrt/voxrt.js" */
+/** @import { Followed, Reading } from "./voxrt/voxrt.js" */
 
 const AXES = "xyz";
-const EDGES = ["01", "23", "45", "67", "02", "13", "46", "57", "04", "15", "26", "37"]; // corners
-const SVG = "http://www.w3.org/2000/svg";
 /** @typedef {Followed & { registers: Registers, size: Size, pixel: Size }} Way of a pixel's ray */
 
 export class Inspector {
@@ -77,25 +75,12 @@ export class Inspector {
   }
 }
 
-/** @param {string} tag @param {Record<string, string | number>} attributes */ function svgElement(tag, attributes) {
-  const made = document.createElementNS(SVG, tag);
-  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, String(value));
-  return made;
-}
-
 /** The edges of an octant; null behind the eye. @param {Reading} reading @param {Registers} registers @param {Size}
  * size */
-function edgesOf({ corner, level }, { position, look, right, up }, [width, height]) {
-  const side = 2 ** level;
-  const eye = position.map((value) => value / 16);
-  const places = Array.from({ length: 8 }, (_, i) => {
-    const place = corner.map((value, axis) => value + ((i >> axis) & 1) * side);
-    const away = subtract(place, eye);
-    const far = dot(away, look) / dot(look, look);
-    /** @param {Vector} axis */ const at = (axis) => dot(away, axis) / dot(axis, axis) / far;
-    return far > 1e-9 ? [Math.floor(width / 2) + at(right) + 0.5, Math.floor(height / 2) - at(up) + 0.5] : null;
-  });
-  const texts = places.map((place) => place?.map((value) => value.toFixed(1)));
-  if (texts.includes(undefined)) return null;
-  return EDGES.map(([a, b]) => `M${texts[Number(a)]}L${texts[Number(b)]}`).join("");
+function edgesOf({ corner, level }, registers, size) {
+  const high = corner.map((value) => value + 2 ** level);
+  const places = cornersOf([corner, high]).map(projection(registers, size));
+  if (places.some(({ far }) => far <= 0)) return null;
+  const texts = places.map(({ x, y }) => [x, y].map((value) => value.toFixed(1)));
+  return BOX_EDGES.map(([a, b]) => `M${texts[a]}L${texts[b]}`).join("");
 }

@@ -12,7 +12,7 @@ import { makePilot } from "./pilot.js";
 import { save } from "./save.js";
 import { sourceOfAddress, sourceOfExample, sourceOfFiles } from "./sources.js";
 import { makeTools } from "./tools.js";
-/** @import { Site } from "./app.js" */
+/** @import { Site } from "./app.js" @import { Walker } from "./walker.js" */
 
 const CLICK = 5; // pixels that a click may move
 
@@ -88,12 +88,12 @@ function inspect(app) {
 }
 
 /** @param {App} app */ function offerDownloads(app) {
-  $("save-mem").onclick = () => {
-    const memory = app.memory();
+  $("save-mem").onclick = async () => {
+    const memory = await app.settled();
     if (memory) save(new Blob([memBytes(memory.words)], { type: "text/plain" }), `${memory.name}.mem`);
   };
-  $("save-manifest").onclick = () => {
-    const memory = app.memory();
+  $("save-manifest").onclick = async () => {
+    const memory = await app.settled();
     if (!memory) return;
     const text = `${JSON.stringify(manifestOf(memory), null, 2)}\n`;
     save(new Blob([text], { type: "application/json" }), `${memory.name}.json`);
@@ -109,12 +109,14 @@ function inspect(app) {
   };
 }
 
-/** Keys, gestures and buttons move the camera. @param {App} app */
+/** Keys, gestures and buttons move the camera. Editing and walking are loaded when they are wanted. @param {App}
+ * app */
 function steer(app) {
   const canvas = $("picture");
   const commands = {
     ...makeTools(),
     KeyF: () => app.glide((now) => frame(now, app.bounds(), app.size(), app.limit())),
+    KeyB: () => $("edit-toggle").click(),
     KeyR: () => app.glide(() => app.firstView()),
     KeyI: () => {
       const { x, y, width, height } = canvas.getBoundingClientRect();
@@ -123,9 +125,40 @@ function steer(app) {
     ...app.views.commands(),
   };
   $("frame").onclick = commands.KeyF;
-  return makePilot(app, canvas, commands, (x, y) => {
-    if (!isPressed($("inspect"))) app.focusAt(x, y);
+  const { gestures, flight } = makePilot(app, canvas, commands, (x, y) => {
+    if (!isPressed($("inspect")) && !document.body.classList.contains("editing")) app.focusAt(x, y);
   });
+  /** @type {Walker | null} */ let walker = null;
+  const load = once(async () => {
+    const [{ Walker }, { EditMode }] = await Promise.all([import("./walker.js"), import("./edit_mode.js")]);
+    walker = new Walker(app, flight);
+    return { walker, edit: new EditMode(app, gestures, commands, walker) };
+  });
+  const fail = (/** @type {Error} */ { message }) => notice("error", "The scene cannot be edited", message);
+  $("edit-toggle").onclick = () => load().then(({ edit }) => edit.toggle(), fail);
+  $("walk").onclick = () => load().then(({ walker }) => walker.start(), fail);
+  const step = () => {
+    flight.step();
+    walker?.step();
+  };
+  const isMoving = () => flight.active || Boolean(walker?.active);
+  return {
+    gestures,
+    flight: {
+      step,
+      get active() {
+        return isMoving();
+      },
+    },
+  };
+}
+
+/** A promise that is made with the first call. @template T @param {() => Promise<T>} make */ function once(make) {
+  /** @type {Promise<T> | null} */ let made = null;
+  return () => {
+    made ??= make();
+    return made;
+  };
 }
 
 async function compile() {
@@ -169,5 +202,6 @@ async function start() {
   };
   animate();
   setInterval(() => app.figures.show(), 250);
+  navigator.serviceWorker?.register("offline.js").catch(() => {}); // without it the page needs the network
 }
 start().catch((error) => notice("error", "The page cannot start", error.message));

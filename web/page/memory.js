@@ -12,12 +12,12 @@ import { hex } from "./voxrt/words.js";
 export const PLAIN = { position: [0, 0, 0], ambient: 90, on: false, flat: false, bounces: 0, faces: FACES };
 /** @type {Lighting} the lighting of a memory with baked light */ export const FLAT = { ...PLAIN, flat: true };
 
-/** A memory that was built or read. `fixed`: it was read, and cannot be built otherwise. `view`: the camera of its
+/** A memory that was built or read. `fixed`: it was read or edited, and cannot be built otherwise. `view`: the camera of its
  * author; `manifest`: that it came with; `lossless`: what fits a budget that gives up much. @typedef {{ name: string, file: string, words: Uint32Array, depth: number,
  * materials: Required<Material>[], grid: { origin: readonly number[], voxelSize: number } | null, objects:
  * object[], warnings: Warning[], lighting?: Lighting | null, view?: Registers | null, manifest?: Manifest | null,
  * baked?: Baked | null, fitted?: Fitted | null, lossless?: { depth: number, words: number } | null, fill?: string, rule?: string, up?: string |
- * null, unit?: number | null, seconds?: number, fixed?: boolean }} Memory */
+ * null, unit?: number | null, seconds?: number, fixed?: boolean, edited?: boolean }} Memory */
 
 /** @typedef {Memory & { voxels: number[], bounds: Box }} Shown with voxels by material */
 

@@ -2,7 +2,7 @@
 
 import { Voxrt } from "./voxrt/voxrt.js";
 import { answerWith } from "./worker_answers.js";
-/** @import { Camera, Look, Size, Triple } from "./voxrt/voxrt.js" */
+/** @import { Camera, Look, Size, Triple } from "./voxrt/voxrt.js" @import { Patch } from "./voxrt/world.js" */
 
 /** @type {Voxrt | null} */ let voxrt = null;
 
@@ -19,6 +19,10 @@ const calls = {
   /** @param {{ words: Uint32Array, depth: number, shading: Look }} job */ memory({ words, depth, shading }) {
     loaded().setMemory(words, depth);
     loaded().shade(shading);
+  },
+
+  /** @param {Patch} patch */ patch(patch) {
+    loaded().applyPatch(patch);
   },
 
   /** @param {{ shading: Look }} job */ shade({ shading }) {

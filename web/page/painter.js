@@ -7,7 +7,8 @@ import { Events } from "./events.js";
 import { Hand } from "./hand.js";
 /** @import { Band, BandFrame } from "./band_picture.js" @import { Registers, Size } from "./camera.js" */
 /** @import { Memory } from "./memory.js" @import { Vector } from "./vectors.js" */
-/** @import { Look } from "./voxrt/voxrt.js" @import { PaintCalls } from "./paint_worker.js" */
+/** @import { Look } from "./voxrt/voxrt.js" @import { Patch } from "./voxrt/world.js" */
+/** @import { PaintCalls } from "./paint_worker.js" */
 
 const TILE = 16; // rows of pixels
 const BANDS = 3; // per worker, or more: they cost differently
@@ -18,9 +19,10 @@ const MEMORY = 1 << 30; // bytes of words in all workers
 const LIMITS = { size: [4096, 4096], pixels: 1 << 24, smooth: 2, width_step: 1, position_limit: 2 ** 27 };
 const DEVICE = { name: "this browser", features: ["light", "mirrors"], ...LIMITS };
 
-/** A frame that is rendered. `since`: when it was requested; `left`: bands that are not rendered; `aside`: who waits
- * for a frame that is not shown. @typedef {{ request: number, camera: Registers, size: Size, since: number, scene:
- * number, left: number, began: number | null, bands: Band[], aside: Aside | null }} Job */
+/** A frame that is rendered. `since`: when it was requested; `edition`: patches of the memory by then; `left`: bands that
+ * are not rendered; `aside`: who waits for a frame that is not shown. @typedef {{ request: number, camera: Registers,
+ * size: Size, since: number, scene: number, edition: number, left: number, began: number | null, bands: Band[], aside:
+ * Aside | null }} Job */
 
 /** @typedef {{ resolve: (frame: BandFrame) => void, reject: (error: Error) => void }} Aside */
 
@@ -34,6 +36,7 @@ const DEVICE = { name: "this browser", features: ["light", "mirrors"], ...LIMITS
   /** @type {Part[]} that no worker has yet */ #queue = [];
   /** @type {Map<number, ArrayBuffer[]>} buffers that no band has, by length */ #buffers = new Map();
   /** @type {Band[]} of the newest frame */ #shown = [];
+  edition = 0; // patches of the memory
   #request = 0;
   #sequence = 0;
   #scene = 0;
@@ -71,6 +74,13 @@ const DEVICE = { name: "this browser", features: ["light", "mirrors"], ...LIMITS
         this.#next(artist);
       }),
     );
+  }
+
+  /** Write a patch into the memory of every worker. Frames that are requested from now on show it. @param {Patch} patch */
+  patch(patch) {
+    this.edition++;
+    for (const { hand } of this.#artists)
+      hand.call("patch", patch).catch(({ message }) => message !== "cancelled" && this.emit("trouble", message));
   }
 
   /** @param {Look} shading */ shade(shading) {
@@ -121,7 +131,8 @@ const DEVICE = { name: "this browser", features: ["light", "mirrors"], ...LIMITS
     const most = Math.ceil(BAND / (TILE * size[0]));
     const step = Math.max(1, Math.min(most, Math.ceil(tiles / (BANDS * this.#artists.length))));
     const left = Math.ceil(tiles / step);
-    const known = { request, camera, size, since: performance.now(), scene: this.#scene, aside };
+    const since = performance.now();
+    const known = { request, camera, size, since, scene: this.#scene, edition: this.edition, aside };
     /** @type {Job} */ const job = { ...known, left, began: null, bands: [] };
     for (let first = 0; first < tiles; first += step)
       this.#queue.push({ job, first, end: Math.min(first + step, tiles) });
@@ -165,13 +176,13 @@ const DEVICE = { name: "this browser", features: ["light", "mirrors"], ...LIMITS
   }
 
   /** @param {Job} job @param {number} began */
-  #finish({ request, since, size: [width, height], bands, camera, aside }, began) {
+  #finish({ request, since, size: [width, height], bands, camera, edition, aside }, began) {
     this.sent.delete(request);
     const sequence = aside ? this.#sequence : ++this.#sequence;
     const ids = { viewer: this.hello.viewer, request, requested: since, sequence };
     const seconds = (performance.now() - began) / 1000;
     const figures = { seconds, rays: width * height, words: null, cycles: null };
-    const frame = { ...ids, ...figures, width, height, bands, camera };
+    const frame = { ...ids, ...figures, width, height, bands, camera, edition };
     if (aside) return aside.resolve(frame);
     this.emit("frame", frame);
     const lengths = new Set(bands.map(({ pixels }) => pixels.byteLength));

@@ -31,7 +31,7 @@ export class Sharing {
   }
 
   /** Whether an address alone brings the scene. */
-  #isPublic = () => Boolean(this.app.source?.example || this.app.source?.urls);
+  #isPublic = () => Boolean(this.app.source?.example || this.app.source?.urls) && !this.app.memory()?.edited;
 
   /** Show whether a link can carry the memory. @param {Shown} memory */ async show(memory) {
     $("share-says").textContent = "";
@@ -50,9 +50,10 @@ export class Sharing {
   }
 
   async #copy() {
-    const [memory, view, source] = [this.app.memory(), this.app.view(), this.app.source];
+    const [memory, view, source] = [await this.app.settled(), this.app.view(), this.app.source];
     if (!memory || !view) return;
-    const search = source?.urls ? `?${new URLSearchParams(source.urls.map((url) => ["model", url]))}` : "";
+    const search =
+      source?.urls && this.#isPublic() ? `?${new URLSearchParams(source.urls.map((url) => ["model", url]))}` : "";
     const { budget, ...options } = this.app.panel.options();
     const built = memory.fixed ? {} : { ...options, depth: memory.depth, words: budget };
     const packed = this.#isPublic() ? null : await this.#pack(memory);
@@ -62,7 +63,7 @@ export class Sharing {
   }
 
   async #savePage() {
-    const [memory, view] = [this.app.memory(), this.app.view()];
+    const [memory, view] = [await this.app.settled(), this.app.view()];
     if (!memory || !view) return;
     const [script, packed] = await Promise.all([fetched("voxrt-view.js"), packedText(memory)]);
     save(

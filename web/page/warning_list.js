@@ -20,7 +20,10 @@ export class WarningList {
       memory.warnings.map((warning) => this.#sentence(warning, memory)).map((one) => [one.text, one]),
     );
     const found = [...sentences.values()].sort((a, b) => Number(Boolean(b.mend)) - Number(Boolean(a.mend)));
-    const all = [...this.#ruin(memory), ...found].map((one) => this.#row(one, memory));
+    const edited = { text: "The voxels are edited. Open the model again to build it otherwise." };
+    const all = [...(memory.edited ? [edited] : []), ...this.#ruin(memory), ...found].map((one) =>
+      this.#row(one, memory),
+    );
     const rest = all.splice(MOST);
     const more = element("details", {}, element("summary", {}, `${rest.length} more`), element("ul", {}, ...rest));
     $("warnings").replaceChildren(...all, ...(rest.length ? [element("li", {}, more)] : []));

@@ -10,6 +10,7 @@
 #include "export.h"
 #include "interface_error.h"
 #include "memory.h"
+#include "rays.h"
 
 #include <voxrt/octree/build/coarsen.h>
 #include <voxrt/octree/query/leaves.h>
@@ -70,6 +71,29 @@ EXPORT(vx_memory) int vx_memory(const octree::Word* words, size_t count, int dep
         memory.reset();
         memory_words.assign(words, words + count);
         memory.emplace(octree::Memory{memory_words.data(), memory_words.size(), static_cast<unsigned>(depth)});
+        return 0;
+    });
+}
+
+/// Writes the blocks of a patch (edit_interface.cpp) and the word of its root, from where the memory is read then, and
+/// verifies the memory anew. Returns 0. `addresses`: of the blocks. `blocks`: 8 * count words.
+EXPORT(vx_patch)
+int vx_patch(const octree::Word* addresses, const octree::Word* blocks, size_t count, size_t root,
+             octree::Word root_word) {
+    return guarded([&] {
+        const unsigned depth = loaded().depth();
+        size_t end = root + 1;
+        for (size_t i = 0; i < count; ++i)
+            end = std::max<size_t>(end, size_t{addresses[i]} + 8);
+        if (end > octree::memory_size(octree::kBlockLimit))
+            throw std::invalid_argument("the patch lies beyond the memory that words can address");
+        memory.reset();
+        if (end > memory_words.size())
+            memory_words.resize(octree::memory_size((end + 6) / 8), octree::kEmpty);
+        for (size_t i = 0; i < count; ++i)
+            std::copy_n(blocks + 8 * i, 8, memory_words.data() + addresses[i]);
+        memory_words[root] = root_word;
+        memory.emplace(octree::Memory{memory_words.data(), memory_words.size(), depth, root_word});
         return 0;
     });
 }
@@ -179,13 +203,7 @@ EXPORT(vx_frame_face) const uint8_t* vx_frame_face() { return frame.face.data();
 /// hit: material, face, x, y, z.
 EXPORT(vx_follow) int vx_follow(const int32_t* origin, const int32_t* direction) {
     return guarded([&] {
-        sim::Line line{};
-        for (int axis = 0; axis < 3; ++axis) {
-            if (direction[axis] <= -sim::kDirectionLimit || direction[axis] >= sim::kDirectionLimit)
-                throw std::invalid_argument("the direction is not below 2**20");
-            line.origin[axis] = origin[axis];
-            line.direction[axis] = direction[axis];
-        }
+        const sim::Line line = web::line_of(origin, direction);
         readings.clear();
         const auto hit = sim::Ray<sim::WideKey>(loaded(), line).trace([](const sim::Reading<sim::WideKey>& reading) {
             readings.insert(readings.end(),

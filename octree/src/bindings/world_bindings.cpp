@@ -115,6 +115,12 @@ nb::object bind_image(PythonWorld& world) {
     return words_to_numpy(with(world, [](World& one) { return one.image(); }));
 }
 
+nb::object bind_written(PythonWorld& world) {
+    std::vector<Word> found = with(world, [](World& one) { return one.written(); });
+    const std::size_t count = found.size();
+    return to_numpy(std::move(found), {count});
+}
+
 // The words of a live root. Other threads may edit meanwhile.
 nb::object bind_words_at(PythonWorld& world, std::size_t root) {
     return words_to_numpy(run([&] {
@@ -153,6 +159,7 @@ void bind_world(nb::module_& m) {
         .def("words", &bind_words)
         .def("words_at", &bind_words_at, "root"_a)
         .def("image", &bind_image)
+        .def("written", &bind_written)
         .def("figures", &bind_figures)
         .def("check", [](PythonWorld& world) { with(world, [](World& one) { one.check(); }); });
 }

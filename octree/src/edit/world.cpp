@@ -129,6 +129,14 @@ Words World::image() const {
     return Words(words, words + memory_size(blocks_.size()));
 }
 
+std::vector<Word> World::written() const {
+    std::vector<Word> found;
+    for (std::size_t number = 0; number < blocks_.size(); ++number)
+        if (const auto word = static_cast<Word>(block_address(number)); blocks_.is_written(word))
+            found.push_back(word);
+    return found;
+}
+
 std::optional<Patch> World::commit() {
     free_ended();
     const LiveRoots::Root newest = roots_->newest();

@@ -114,6 +114,10 @@ public:
     /// All words, those of free blocks among them: what a memory has that got every patch.
     Words image() const;
 
+    /// Addresses of the blocks that commit() has written and that are in use, ascending: a memory that got every patch
+    /// has them as image() does.
+    std::vector<Word> written() const;
+
     /// Frees what is no longer live, and counts the blocks from their parents and roots. Throws std::logic_error where
     /// a block is missing, counted wrongly, or not canonical: for tests.
     void check();

@@ -180,6 +180,10 @@ private:
             std::copy_n(patch->blocks[i].data(), 8, &device_[patch->addresses[i]]);
         if (patch->root != 0)
             device_[patch->root] = patch->root_word;
+        const Words image = world_->image();
+        for (const Word address : world_->written())
+            if (!std::equal(&image[address], &image[address] + 8, &device_[address]))
+                fail_("a patched memory has other blocks");
         live_[patch->root] = cells_;
         const std::shared_ptr<const View> view(new View(world_->view(patch->root)));
         readers_.emplace_back([this, view, cells = cells_] {

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.formats.authored_properties import explain
 from voxrt.voxelize.formats.external_files import read_asset
 from voxrt.voxelize.formats.gltf.schema import Gltf
-from voxrt.voxelize.formats.gltf.schema_errors import explain
 
 if TYPE_CHECKING:
     from pathlib import Path

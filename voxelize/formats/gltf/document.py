@@ -10,12 +10,12 @@ from urllib.parse import unquote, unquote_to_bytes
 import msgspec
 
 from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.formats.authored_properties import explain
 from voxrt.voxelize.formats.external_files import ALLOW_OUTSIDE, ExternalFiles
 from voxrt.voxelize.formats.gltf.container import read_container
 from voxrt.voxelize.formats.gltf.extensions import MESHOPT
 from voxrt.voxelize.formats.gltf.meshopt import CompressedView, decode
 from voxrt.voxelize.formats.gltf.meshopt_attributes import BadStreamError
-from voxrt.voxelize.formats.gltf.schema_errors import explain
 from voxrt.voxelize.formats.opacity import OPAQUE_FROM
 from voxrt.voxelize.warning_log import WarningLog
 

@@ -1,37 +1,16 @@
-"""Properties for voxrt in the `extras` of nodes and materials (custom properties, in Blender).
-
-`voxrt_material` names the material that a node's faces take, or renames a material; `voxrt_collider` makes a node's
-mesh collide as a box, a sphere, a hull or a mesh; `voxrt_rule` says which voxels it fills; `voxrt_reflect` makes a
-material, or what a node shows, a mirror.
-"""
+"""Properties for voxrt in the `extras` of nodes and materials (custom properties, in Blender)."""
 
 from __future__ import annotations
 
-import difflib
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 import msgspec
 
-from voxrt.voxelize.collider_shapes import ColliderKind  # noqa: TC001 -- msgspec reads the annotations
-from voxrt.voxelize.formats.gltf.schema_errors import explain
-from voxrt.voxelize.rules import Rule  # noqa: TC001
+from voxrt.voxelize.formats.authored_properties import PREFIX, MaterialProperties, ObjectProperties, checked_properties
 
 if TYPE_CHECKING:
+    from voxrt.voxelize.formats.authored_properties import P
     from voxrt.voxelize.formats.gltf.document import Document
-
-
-class MaterialExtras(msgspec.Struct, frozen=True, kw_only=True):
-    """The properties of a material: its name in the palette, and whether it is a mirror."""
-
-    voxrt_material: str | None = None
-    voxrt_reflect: bool | float = False
-
-
-class NodeExtras(MaterialExtras, frozen=True, kw_only=True):
-    """The properties of a node: the material of its faces, whether they are mirrors, its collider and its rule."""
-
-    voxrt_collider: ColliderKind | None = None
-    voxrt_rule: Rule | None = None
 
 
 def refuse_misplaced(document: Document) -> None:
@@ -44,21 +23,20 @@ def refuse_misplaced(document: Document) -> None:
                 raise document.error(place, problem, "move them there (in Blender: from the mesh to the object)")
 
 
-_PREFIX = b'"voxrt_'
-_T = TypeVar("_T", MaterialExtras, NodeExtras)
+_PREFIX = f'"{PREFIX}'.encode()
 
 
-def node_extras(document: Document, index: int) -> NodeExtras:
+def node_extras(document: Document, index: int) -> ObjectProperties:
     """Return the properties of node `index`."""
-    return _read(document, document.gltf.nodes[index].extras, f"nodes[{index}].extras", NodeExtras)
+    return _read(document, document.gltf.nodes[index].extras, f"nodes[{index}].extras", ObjectProperties)
 
 
-def material_extras(document: Document, index: int) -> MaterialExtras:
+def material_extras(document: Document, index: int) -> MaterialProperties:
     """Return the properties of material `index`."""
-    return _read(document, document.gltf.materials[index].extras, f"materials[{index}].extras", MaterialExtras)
+    return _read(document, document.gltf.materials[index].extras, f"materials[{index}].extras", MaterialProperties)
 
 
-def _read(document: Document, extras: msgspec.Raw, place: str, kind: type[_T]) -> _T:
+def _read(document: Document, extras: msgspec.Raw, place: str, kind: type[P]) -> P:
     if _PREFIX not in bytes(extras):
         return kind()
     try:
@@ -67,13 +45,4 @@ def _read(document: Document, extras: msgspec.Raw, place: str, kind: type[_T]) -
         raise document.error(place, "is not valid JSON") from None
     if not isinstance(authored, dict):
         return kind()
-    for key in authored:
-        if key.startswith("voxrt_") and key not in kind.__struct_fields__:
-            nearest = difflib.get_close_matches(key, kind.__struct_fields__, n=1)
-            fix = f"did you mean {nearest[0]}?" if nearest else f"use {', '.join(kind.__struct_fields__)}"
-            raise document.error(f"{place}.{key}", "unknown property for voxrt", fix)
-    try:
-        return msgspec.convert(authored, kind)
-    except msgspec.ValidationError as error:
-        problem, here = explain(error, place)
-        raise document.error(here, problem, "correct the property") from None
+    return checked_properties(authored, kind, place, document.error)

@@ -14,18 +14,15 @@ from msgspec import Struct
 from voxrt.voxelize.collider_shapes import BoxCollider, HullCollider, MeshCollider, SphereCollider
 from voxrt.voxelize.formats.gltf.extensions import PHYSICS, SHAPES
 from voxrt.voxelize.formats.gltf.schema import Index, Vec3  # noqa: TC001 -- msgspec reads the annotations
+from voxrt.voxelize.formats.round_shapes import capsule_points, cylinder_points
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-
-    from numpy.typing import NDArray
 
     from voxrt.voxelize.collider_shapes import Collider
     from voxrt.voxelize.formats.gltf.document import Document
     from voxrt.voxelize.formats.gltf.meshes import Surface
 
-_AROUND = 128
-_FROM_POLE = 32
 _LARGEST = 1e150  # squares of larger sizes overflow
 
 
@@ -147,9 +144,8 @@ def _shaped(document: Document, shape: Shape, index: int) -> Collider | None:
     if min(solid.radius_top, solid.radius_bottom) < 0:
         raise document.error(place, "a radius is negative")
     if shape.type == "cylinder":
-        rings = [_ring(solid.radius_top, solid.height / 2), _ring(solid.radius_bottom, -solid.height / 2)]
-        return HullCollider(np.concatenate(rings))
-    return HullCollider(np.concatenate([_half_ball(solid, 1.0), _half_ball(solid, -1.0)]))
+        return HullCollider(cylinder_points(solid.radius_top, solid.radius_bottom, solid.height))
+    return HullCollider(capsule_points(solid.radius_top, solid.radius_bottom, solid.height))
 
 
 def _check_sizes(document: Document, place: str, *sizes: float) -> None:
@@ -165,19 +161,3 @@ def _plane(document: Document, plane: Plane, place: str) -> Collider | None:
     x, z = plane.size_x / 2, plane.size_z / 2
     corners = np.array([[-x, 0.0, -z], [-x, 0.0, z], [x, 0.0, z], [x, 0.0, -z]])
     return MeshCollider(corners, np.array([[0, 1, 2], [0, 2, 3]], np.int32))
-
-
-def _ring(radius: float, height: float) -> NDArray[np.float64]:
-    """Return points on a circle about y, shape (128, 3)."""
-    angles = np.arange(_AROUND) * (2 * np.pi / _AROUND)
-    return np.column_stack([radius * np.cos(angles), np.full(_AROUND, height), radius * np.sin(angles)])
-
-
-def _half_ball(capsule: Round, side: float) -> NDArray[np.float64]:
-    """Return points on the upper (`side` 1) or lower (-1) half ball of a capsule."""
-    radius = capsule.radius_top if side > 0 else capsule.radius_bottom
-    rings = []
-    for angle in np.arange(_FROM_POLE + 1) * (np.pi / 2 / _FROM_POLE):
-        height = side * (capsule.height / 2 + radius * np.sin(angle))
-        rings.append(_ring(radius * np.cos(angle), height))
-    return np.concatenate(rings)

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.voxelize.collider_shapes import Collider, ColliderKind
+    from voxrt.voxelize.formats.authored_properties import ObjectProperties
     from voxrt.voxelize.formats.gltf.document import Document
-    from voxrt.voxelize.formats.gltf.extras import NodeExtras
     from voxrt.voxelize.formats.gltf.meshes import Surface
     from voxrt.voxelize.formats.gltf.nodes import Hierarchy
     from voxrt.voxelize.rules import Rule
@@ -69,6 +69,9 @@ class VisibleNodes:
         """Go through what the scene shows, in extras order; meshes without triangles are left out."""
         for node in self._hierarchy.shown:
             extras = node_extras(self._document, node)
+            if extras.voxrt_ignore:
+                self._document.log.add("ignored", "objects with voxrt_ignore were left out")
+                continue
             override = self._override(node, extras)
             material = MaterialKey(NO_MATERIAL if override is None else override, bool(extras.voxrt_reflect))
             collider = physics_collider(self._document, node, self._shapes, self._mesh_as_authored)
@@ -113,7 +116,7 @@ class VisibleNodes:
             for name, content in zip(plain, contents, strict=True)
         ]
 
-    def _mesh(self, index: int, override: int | None, extras: NodeExtras) -> tuple[PoseKey, AppearanceKey] | None:
+    def _mesh(self, index: int, override: int | None, extras: ObjectProperties) -> tuple[PoseKey, AppearanceKey] | None:
         node = self._document.gltf.nodes[index]
         if node.mesh is None:
             return None
@@ -124,7 +127,7 @@ class VisibleNodes:
             return None
         return pose_key, AppearanceKey(node.mesh, override, bool(extras.voxrt_reflect), self._variant)
 
-    def _override(self, index: int, extras: NodeExtras) -> int | None:
+    def _override(self, index: int, extras: ObjectProperties) -> int | None:
         wanted = extras.voxrt_material
         if wanted is None:
             return None

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.voxelize.formats.external_files import ExternalFiles
-    from voxrt.voxelize.formats.usd.limits import Allowance
+    from voxrt.voxelize.formats.reader_process.limits import Allowance
     from voxrt.voxelize.formats.usd.shading import ImageSource, Shading
     from voxrt.voxelize.warning_log import WarningLog
 

@@ -17,7 +17,7 @@ from voxrt.voxelize.formats.external_files import ALLOW_OUTSIDE
 
 if TYPE_CHECKING:
     from voxrt.voxelize.formats.external_files import ExternalFiles
-    from voxrt.voxelize.formats.usd.limits import Allowance
+    from voxrt.voxelize.formats.reader_process.limits import Allowance
 
 
 def open_layers(path: Path, external_files: ExternalFiles, allowance: Allowance) -> list[Sdf.Layer]:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from voxrt.voxelize.formats.usd.limits import Allowance
+    from voxrt.voxelize.formats.reader_process.limits import Allowance
 
 
 def read_stage(

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from voxrt.voxelize.collider_shapes import Collider
     from voxrt.voxelize.formats.external_files import ExternalFiles
-    from voxrt.voxelize.formats.usd.limits import Allowance
+    from voxrt.voxelize.formats.reader_process.limits import Allowance
     from voxrt.voxelize.formats.usd.shading import Shading
     from voxrt.voxelize.rules import Rule
 

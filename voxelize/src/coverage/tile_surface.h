@@ -35,10 +35,9 @@ struct ShellBrick {
     bool has_shell() const { return material != 0 || cells != kNone; }
 };
 
-/// What the triangles of a brick add to volumes, by slice and bit (volume_pieces.h).
-struct VolumePieces {
-    std::array<double, kBrickVoxels> area{}, volume{};
-};
+/// What the triangles of a brick add to the volume of a voxel and of all above, by slice and bit; the last slice is the
+/// lowest of the brick above.
+using VolumePieces = std::array<double, kBrickVoxels + 64>;
 
 /// A crossing whose bit is already set.
 struct RepeatedCrossing {
@@ -134,12 +133,12 @@ public:
         ShellBrick& brick = at(locate(x, y).column, z >> kBrickBits);
         if (brick.pieces == kNone) {
             brick.pieces = uint32_t(pieces_.size());
-            pieces_.emplace_back();
+            pieces_.emplace_back().fill(0);
         }
         VolumePieces& pieces = pieces_[brick.pieces];
         const auto place = size_t((z & (kBrickSide - 1)) * 64 + column_bit(x - x_, y - y_));
-        pieces.area[place] += area;
-        pieces.volume[place] += volume;
+        pieces[place] += volume;
+        pieces[place + 64] += area - volume;
     }
 
     /// Brick `k` (along z) of a brick column, or null.

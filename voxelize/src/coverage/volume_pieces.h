@@ -8,6 +8,7 @@
 // The triangle is cut by the planes between voxels (Sutherland and Hodgman 1974). Where an edge meets a plane does not
 // depend on the triangle that has the edge, so errors of neighbours cancel. Coordinates of triangles up to
 // kNarrowExtent wide are below 2^8 voxels, so a piece's volume has an error below 2^-43; larger ones take TwoDoubles.
+// Cells that lie wholly below the triangle have a closed form, in heights from their lowest corner.
 #pragma once
 
 #include "../grid/two_doubles.h"
@@ -30,43 +31,59 @@ public:
     int count() const { return count_; }
     const Corner<Number>& operator[](int i) const { return corners_[size_t(i)]; }
 
-    /// What lies on one side of the plane where coordinate `axis` is `value`: above it, or below.
-    Polygon cut(int axis, double value, bool above) const {
+    /// What lies where coordinate `axis` is from `value` to `value` + 1.
+    Polygon slab(int axis, double value) const {
         Polygon kept;
-        const Number plane(value);
-        auto is_kept = [&](const Corner<Number>& c) {
-            return above ? !(c.at[size_t(axis)] < plane) : !(plane < c.at[size_t(axis)]);
+        const Number planes[2] = {Number(value), Number(value + 1)};
+        auto side = [&](const Corner<Number>& c) {
+            return c.at[size_t(axis)] < planes[0] ? -1 : planes[1] < c.at[size_t(axis)] ? 1 : 0;
         };
+        int before = side(corners_[0]);
         for (int i = 0; i < count_; ++i) {
             const Corner<Number>&a = corners_[size_t(i)], &b = corners_[size_t(i + 1 == count_ ? 0 : i + 1)];
-            if (is_kept(a))
+            const int after = side(b);
+            if (before == 0)
                 kept.add(a);
-            if (is_kept(a) != is_kept(b))
-                kept.add(meet(a, b, axis, plane));
+            else if (before != after)
+                kept.add(meet(a, b, axis, planes[before > 0]));
+            if (after != 0 && before != after)
+                kept.add(meet(a, b, axis, planes[after > 0]));
+            before = after;
         }
         return kept;
     }
 
-    int lowest(int axis) const { return int(std::floor(double(extreme(axis, false)))); }
-    int highest(int axis) const { return int(std::ceil(double(extreme(axis, true)))) - 1; }
+    int lowest(int axis) const {
+        const auto value = double(extreme(axis, false));
+        const int whole = int(value);
+        return whole - (value < whole);
+    }
+    int highest(int axis) const {
+        const auto value = double(extreme(axis, true));
+        const int whole = int(value);
+        return whole - !(value > whole);
+    }
+
+    /// The polygon with another origin. Coordinates near it need no more than float64.
+    Polygon<double> from(double x, double y, double z) const {
+        Polygon<double> moved;
+        for (int i = 0; i < count_; ++i) {
+            const auto& at = corners_[size_t(i)].at;
+            moved.add({{double(at[0] - Number(x)), double(at[1] - Number(y)), double(at[2] - Number(z))}});
+        }
+        return moved;
+    }
 
     /// The area seen along z, positive where corners run counter-clockwise, and the volume between the polygon and the
-    /// plane z = top.
-    void measure(double x, double y, double top, double& area, double& volume) const {
+    /// plane z = top. In float64.
+    void measure(double top, double& area, double& volume) const {
         area = volume = 0;
-        auto local = [&](const Corner<Number>& c, double out[3]) {
-            out[0] = double(c.at[0] - Number(x));
-            out[1] = double(c.at[1] - Number(y));
-            out[2] = double(Number(top) - c.at[2]);
-        };
-        double a[3], b[3], c[3];
-        local(corners_[0], a);
+        const auto& a = corners_[0].at;
         for (int i = 2; i < count_; ++i) {
-            local(corners_[size_t(i - 1)], b);
-            local(corners_[size_t(i)], c);
+            const auto &b = corners_[size_t(i - 1)].at, &c = corners_[size_t(i)].at;
             const double part = ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2;
             area += part;
-            volume += part * (a[2] + b[2] + c[2]) / 3;
+            volume += part * ((top - a[2]) + (top - b[2]) + (top - c[2])) / 3;
         }
     }
 
@@ -101,31 +118,82 @@ private:
     int count_ = 0;
 };
 
-/// The height of a triangle's plane, exact but for the last bit of float64; z > 0 in the normal.
+/// How much of a cell lies above a plane: the area of the part that is lower than a height, and its integral.
+///
+/// Heights are from the cell's lowest corner. The plane rises by `less` along one side, and by `more` along the other.
+class CellBelowPlane {
+public:
+    CellBelowPlane(double slope_x, double slope_y)
+        : less_(std::min(slope_x, slope_y)), more_(std::max(slope_x, slope_y)), rise_(slope_x + slope_y) {}
+
+    double area(double height) const {
+        if (height <= 0)
+            return 0;
+        if (height >= rise_)
+            return 1;
+        if (height < less_)
+            return height * height / (2 * less_ * more_);
+        if (height <= more_)
+            return (height - less_ / 2) / more_;
+        const double left = rise_ - height;
+        return 1 - left * left / (2 * less_ * more_);
+    }
+
+    /// The integral of the area. Each of its four parts is free of cancellation.
+    double volume(double from, double to) const {
+        double sum = 0, at = std::max(from, 0.0);
+        auto next = [&](double end) { return std::min(end, to); };
+        if (at < less_ && at < to) {
+            const double end = next(less_);
+            sum += (end - at) * (end * end + end * at + at * at) / (6 * less_ * more_);
+            at = end;
+        }
+        if (at < more_ && at < to) {
+            const double end = next(more_);
+            sum += (end - at) * (end + at - less_) / (2 * more_);
+            at = end;
+        }
+        if (at < rise_ && at < to) {
+            const double end = next(rise_), a = rise_ - at, b = rise_ - end;
+            sum += (end - at) - (end - at) * (a * a + a * b + b * b) / (6 * less_ * more_);
+            at = end;
+        }
+        return at < to ? sum + (to - at) : sum;
+    }
+
+    double middle() const { return rise_ / 2; }
+
+private:
+    double less_, more_, rise_;
+};
+
+/// The plane of a triangle over cells; z > 0 in the normal.
 template <typename Wide> class PlaneHeight {
 public:
     PlaneHeight(const LocalTriangle<Wide>& t, Wide nx, Wide ny, Wide nz)
-        : nx_(nx), ny_(ny), nz_(nz), offset_(nx * t.x[0] + ny * t.y[0] + nz * t.z[0]),
-          spread_(((nx < 0 ? -nx : nx) + (ny < 0 ? -ny : ny)) * (kUnit / 2)) {}
+        : nx_(nx), ny_(ny), unit_(nz * kUnit), offset_(nx * t.x[0] + ny * t.y[0] + nz * t.z[0]),
+          spread_(((nx < 0 ? -nx : nx) + (ny < 0 ? -ny : ny)) * (kUnit / 2)), cell_(slope(nx, nz), slope(ny, nz)) {}
 
-    /// Above (x, y), in half voxels; the height is in voxels.
-    double at(int x, int y) const {
-        const Wide numerator = numerator_at(x, y), whole = floor_div<Wide>(numerator, nz_);
-        const double part = static_cast<double>(numerator - whole * nz_) / static_cast<double>(nz_);
-        return (static_cast<double>(whole) + part) / kUnit;
+    const CellBelowPlane& cell() const { return cell_; }
+
+    /// The voxels that the plane passes in a cell, and how far above the lowest one's bottom it begins.
+    struct Heights {
+        int low, high;
+        double begin;
+    };
+    Heights over(int x, int y) const {
+        const Wide centre = offset_ - nx_ * ((2 * x + 1) * static_cast<Wide>(kUnit / 2)) -
+                            ny_ * ((2 * y + 1) * static_cast<Wide>(kUnit / 2));
+        const Wide least = centre - spread_, low = floor_div<Wide>(least, unit_);
+        return {static_cast<int>(low), static_cast<int>(floor_div<Wide>(centre + spread_ - 1, unit_)),
+                static_cast<double>(least - low * unit_) / static_cast<double>(unit_)};
     }
-
-    /// The lowest and the highest voxel that the plane passes in the cell at (x, y), voxels.
-    int lowest(int x, int y) const { return voxel(numerator_at(2 * x + 1, 2 * y + 1) - spread_); }
-    int highest(int x, int y) const { return voxel(numerator_at(2 * x + 1, 2 * y + 1) + spread_ - 1); }
 
 private:
-    Wide numerator_at(int x, int y) const {
-        return offset_ - nx_ * (x * static_cast<Wide>(kUnit / 2)) - ny_ * (y * static_cast<Wide>(kUnit / 2));
-    }
-    int voxel(Wide numerator) const { return static_cast<int>(floor_div<Wide>(numerator, nz_ * kUnit)); }
+    static double slope(Wide n, Wide nz) { return std::abs(static_cast<double>(n) / static_cast<double>(nz)); }
 
-    Wide nx_, ny_, nz_, offset_, spread_;
+    Wide nx_, ny_, unit_, offset_, spread_;
+    CellBelowPlane cell_;
 };
 
 /// The cells of a row that lie wholly below a triangle: first … last.
@@ -172,38 +240,36 @@ void add_pieces(const Vertex& a, const Vertex& b, const Vertex& c, const Window&
         else if (layer <= w.top)
             receiver.add_piece(x + t.bx, y + t.by, layer, area, volume);
     };
-    auto add = [&](int x, int y, int z, const Polygon<Number>& piece) {
-        if (piece.count() < 3)
-            return;
-        double area, volume;
-        piece.measure(x, y, z + 1, area, volume);
-        report(x, y, z, -area, -volume);
+    auto add_column = [&](int x, int y, const Polygon<Number>& column) {
+        // A flat piece between two voxels counts for the lower one, where it adds no volume.
+        const int high = column.highest(2), low = std::min(column.lowest(2), high);
+        const Polygon<double> local = column.from(x, y, low);
+        for (int z = low; z <= high; ++z) {
+            const Polygon<double> piece = low == high ? local : local.slab(2, z - low);
+            if (piece.count() < 3)
+                continue;
+            double area, volume;
+            piece.measure(z + 1 - low, area, volume);
+            report(x, y, z, -area, -volume);
+        }
     };
-    // A flat piece between two voxels counts for the lower one, where it adds no volume.
-    auto add_between = [&](int x, int y, int low, int high, const Polygon<Number>& column) {
-        if (low >= high)
-            add(x, y, high, column);
-        else
-            for (int z = low; z <= high; ++z)
-                add(x, y, z, column.cut(2, z, true).cut(2, z + 1, false));
-    };
+    const double facing = -static_cast<double>(sign);
     auto add_whole_cell = [&](int x, int y) {
-        const int low = plane.lowest(x, y), high = plane.highest(x, y);
+        const auto [low, high, begin] = plane.over(x, y);
         if (low >= high) {
-            report(x, y, high, -double(sign), -double(sign) * (high + 1 - plane.at(2 * x + 1, 2 * y + 1)));
+            report(x, y, high, facing, facing * (high + 1 - low - (begin + plane.cell().middle())));
             return;
         }
-        Polygon<Number> cell;
-        for (int i = 0; i < 4; ++i) { // in the order of the triangle's corners
-            const int u = x + (sign > 0 ? (i == 1 || i == 2) : i > 1);
-            const int v = y + (sign > 0 ? i > 1 : (i == 1 || i == 2));
-            cell.add({{Number(u), Number(v), Number(plane.at(2 * u, 2 * v))}});
+        double below = 0; // the area that is lower
+        for (int z = low; z <= high; ++z) {
+            const double top = z + 1 - low - begin, area = z == high ? 1 : plane.cell().area(top);
+            report(x, y, z, facing * (area - below), facing * (plane.cell().volume(top - 1, top) - below));
+            below = area;
         }
-        add_between(x, y, low, high, cell);
     };
     const int y_end = std::min(whole.highest(1), w.y1 - t.by);
     for (int y = std::max(0, w.y0 - t.by); y <= y_end; ++y) {
-        const Polygon<Number> row = whole.cut(1, y, true).cut(1, y + 1, false);
+        const Polygon<Number> row = whole.slab(1, y);
         if (row.count() < 3)
             continue;
         const WholeCells<Number> cells(row, y);
@@ -213,9 +279,9 @@ void add_pieces(const Vertex& a, const Vertex& b, const Vertex& c, const Window&
                 add_whole_cell(x, y);
                 continue;
             }
-            const Polygon<Number> column = row.cut(0, x, true).cut(0, x + 1, false);
+            const Polygon<Number> column = row.slab(0, x);
             if (column.count() >= 3)
-                add_between(x, y, column.lowest(2), column.highest(2), column);
+                add_column(x, y, column);
         }
     }
 }

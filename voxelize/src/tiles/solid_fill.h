@@ -117,14 +117,13 @@ private:
         ColumnWinding winding;
         const int slices = std::min(object.side(), kBrickSide);
         const bool has_volumes = rule_ && rule_->asks_for_volumes();
-        below_.fill(0);
+        uint64_t summed = 0; // columns whose volume is summed in below_: the last slice had surface there
         while (k < object.height()) {
             const ShellBrick* brick = object.find(column, k);
             if (brick == nullptr) {
                 const int end = k > highest ? object.height() : object.next_brick(column, k, highest);
                 claim_run(tile, column, k, end, winding.inside(), interior, result);
-                for (int bit = 0; has_volumes && bit < 64; ++bit)
-                    below_[bit] = winding.at(bit);
+                summed = 0;
                 k = end;
                 continue;
             }
@@ -132,31 +131,33 @@ private:
             const Slices surface = has_volumes ? object.all_surface(*brick, slices_of(brick->shell)) : Slices{};
             const Crossings crossings(*brick);
             const uint32_t index = object.index_of(*brick);
+            const VolumePieces* pieces = brick->pieces == kNone ? nullptr : &object.pieces(brick->pieces);
             for (int z = 0; z < slices; ++z) {
+                // Below its surface a solid fills as many voxels as the winding number says, which has no rounding.
+                for (uint64_t begun = surface[z] & ~summed; begun != 0; begun &= begun - 1)
+                    below_[std::countr_zero(begun)] = winding.at(std::countr_zero(begun));
+                summed = surface[z];
                 advance(winding, crossings, index, brick->has_repeated, z);
                 within[z] = winding.inside();
-                if (has_volumes)
-                    add_volumes(object, *brick, surface[z], z, winding);
+                add_volumes(pieces, surface[z], z);
             }
+            if (pieces)
+                for (uint64_t left = summed; left != 0; left &= left - 1)
+                    below_[std::countr_zero(left)] += (*pieces)[kBrickVoxels + std::countr_zero(left)];
             claim_brick(tile, object, column, k, *brick, within, interior, result);
             ++k;
         }
         result.simple = result.simple && winding.simple();
     }
 
-    /// Finds the volumes of the voxels of a slice that have surface. Elsewhere the solid fills as many voxels as the
-    /// winding number says, which rounding cannot change.
-    void add_volumes(const TileSurface& object, const ShellBrick& brick, uint64_t surface, int z,
-                     const ColumnWinding& winding) {
-        const VolumePieces* pieces = brick.pieces == kNone ? nullptr : &object.pieces(brick.pieces);
-        for (int bit = 0; bit < 64; ++bit) {
+    /// Finds the volumes of the voxels of a slice that have surface.
+    void add_volumes(const VolumePieces* pieces, uint64_t surface, int z) {
+        for (uint64_t left = surface; left != 0; left &= left - 1) {
+            const int bit = std::countr_zero(left);
             const auto place = size_t(z * 64 + bit);
-            if (surface >> bit & 1)
-                volumes_[place] = std::min(std::abs(below_[bit] + (pieces ? pieces->volume[place] : 0)), 1.0);
-            else
-                below_[bit] = winding.at(bit);
             if (pieces)
-                below_[bit] += pieces->area[place];
+                below_[bit] += (*pieces)[place];
+            volumes_[place] = std::min(std::abs(below_[bit]), 1.0);
         }
     }
 

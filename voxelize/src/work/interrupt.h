@@ -18,6 +18,9 @@ namespace voxrt::voxelize {
 /// Counts the work of one thread.
 class WorkCounter {
 public:
+    /// From one check to the next, on an idle processor.
+    static constexpr double kCheckSeconds = 0.01;
+
     /// The counter of the current thread. A reference may be kept, but used on that thread only.
     static WorkCounter& current() { return current_; }
 

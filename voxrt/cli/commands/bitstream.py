@@ -81,7 +81,7 @@ def _make_scene(options: BitstreamCommand, source: Path) -> None:
         count = partial(progress, "count cycles")
         beam = fit(blob.rom, orbit(blob.rom, size, roots=roots), lighting, design.tracer, progress=count)
     bits = make_bitstream(placed, board_scene(blob), orbit(blob.rom, beam.size, roots=roots), lighting, beam)
-    file, report = (options.output / f"{source.stem}{suffix}" for suffix in (".bit", ".report.json"))
+    file, report = (options.output / f"{source.stem}{suffix}" for suffix in (placed.suffix, ".report.json"))
     result = bitstream_result(blob.rom, placed, beam, file, budget)
     _write(file, bits, report, result)
     rows = summary_rows(result, report)

@@ -147,14 +147,18 @@ def _build(asset: Path, command: BuildCommand) -> tuple[voxrt.BuildResult, Engin
 def _built(asset: Path, command: BuildCommand, bar: BuildBar) -> voxrt.BuildResult:
     assets, frames, output, options = command.assets, command.frames, command.output, command.options
     if frames is None:
-        return build(asset, output, options, progress=bar.begin, estimated=bar.estimate, clustered=bar.tiles)
+        return build(
+            asset, output, options, progress=bar.begin, estimated=bar.estimate, clustered=bar.tiles, rendered=bar.rows
+        )
     made: Path | list[Path] = asset
     if frames == "files" and (len(assets) > 1 or not asset.is_dir()):
         from voxrt.sources.frames import natural_order  # noqa: PLC0415 - NumPy comes with it
 
         made = sorted(assets, key=natural_order)
     times = None if frames == "files" else voxrt.frame_times(*frames)
-    return voxrt.build_animation(made, output, options, times=times, progress=bar.begin, estimated=bar.estimate)
+    return voxrt.build_animation(
+        made, output, options, times=times, progress=bar.begin, estimated=bar.estimate, rendered=bar.rows
+    )
 
 
 def _check(result: voxrt.BuildResult, command: BuildCommand, bar: BuildBar) -> EngineCheck | None:

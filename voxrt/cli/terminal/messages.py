@@ -48,8 +48,7 @@ def warn(warnings: Iterable[SceneWarning]) -> None:
     for kind, alike in kinds.items():
         printed = alike if _verbosity > 0 else alike[:_PRINTED_OF_A_KIND]
         for warning in printed:
-            times = f" ({warning.count} times)" if warning.count > 1 else ""
-            _print(f"voxrt: warning: {printable(warning.message)}{times}")
+            _print(f"voxrt: warning: {printable(warning)}")
         if len(alike) > len(printed):
             _print(f"voxrt: warning: ... and {len(alike) - len(printed)} more of the kind {kind!r} (-v shows all)")
 

@@ -19,7 +19,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -54,23 +53,31 @@ constexpr int kThreadLimit = 1024;
 
 NamedTuple rendered_pixels, traced_rays;
 
-// A memory with words of its own, so that nobody changes them after they are verified.
+// A memory with words of its own, so that nobody changes them after they are verified. Memories of other roots share
+// them.
 class OwnedMemory {
 public:
-    OwnedMemory(const Words& words, int depth)
-        : words_(words.data(), words.data() + words.shape(0)), verified_(verify(words_, depth)) {}
+    OwnedMemory(const Words& words, int depth, std::size_t root)
+        : words_(std::make_shared<const std::vector<uint32_t>>(words.data(), words.data() + words.shape(0))),
+          verified_(verify(*words_, depth, root)) {}
+    OwnedMemory(const OwnedMemory& other, int depth, std::size_t root)
+        : words_(other.words_), verified_(verify(*words_, depth, root)) {}
     OwnedMemory(const OwnedMemory&) = delete;
     OwnedMemory& operator=(const OwnedMemory&) = delete;
 
     const VerifiedMemory& verified() const { return verified_; }
 
 private:
-    static VerifiedMemory verify(const std::vector<uint32_t>& words, int depth) {
+    static VerifiedMemory verify(const std::vector<uint32_t>& words, int depth, std::size_t root) {
+        if (root >= words.size() && !words.empty())
+            throw std::invalid_argument("there is no word " + std::to_string(root) + " in a memory of " +
+                                        std::to_string(words.size()));
         const LongCall call;
-        return VerifiedMemory({words.data(), words.size(), depth < 0 ? 0 : static_cast<unsigned>(depth)});
+        const std::uint64_t word = root == 0 ? voxrt::octree::kWord0 : words[root];
+        return VerifiedMemory({words.data(), words.size(), depth < 0 ? 0 : static_cast<unsigned>(depth), word});
     }
 
-    std::vector<uint32_t> words_;
+    std::shared_ptr<const std::vector<uint32_t>> words_;
     VerifiedMemory verified_;
 };
 
@@ -90,18 +97,18 @@ struct FrameEnded {
     std::string problem;
 };
 
-// Ends the work of the current thread after `seconds`, or when `stop` is set; made after a LongCall, whose check it
-// calls too.
+// Ends the work of the current thread after `seconds` of an idle processor, or when `stop` is set; made after a
+// LongCall, whose check it calls too. Work is counted, not time: a busy machine ends no frame earlier.
 class FrameLimit {
 public:
     FrameLimit(double seconds, const Stop* stop)
         : seconds_(seconds), stop_(stop), outer_(voxrt::voxelize::WorkCounter::current().current_check()) {}
 
 private:
-    void check() const {
+    void check() {
         if (stop_ != nullptr && stop_->requested())
             throw FrameEnded{PyExc_InterruptedError, "the frame was stopped"};
-        if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count() > seconds_)
+        if (++checks_ * voxrt::voxelize::WorkCounter::kCheckSeconds > seconds_)
             throw FrameEnded{PyExc_TimeoutError, "the frame takes too long"};
         (*outer_)();
     }
@@ -109,7 +116,7 @@ private:
     const double seconds_;
     const Stop* const stop_;
     const std::function<void()>* const outer_;
-    const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    double checks_ = 0;
     const voxrt::voxelize::InterruptScope scope_{[this] { check(); }};
 };
 
@@ -339,8 +346,12 @@ NB_MODULE(_model, m) {
         .def(nb::init<>())
         .def("set", &Stop::set, "End the frames that were given this object, and all further ones.");
     nb::class_<OwnedMemory>(m, "Memory", "A verified octree memory, which any number of threads may trace through.")
-        .def(nb::init<const Words&, int>(), nb::arg("words"), nb::arg("depth"),
-             "Copy words (uint32, report dialect) of a depth of 1 ... 16. ValueError, naming the word: malformed.")
+        .def(nb::init<const Words&, int, std::size_t>(), nb::arg("words"), nb::arg("depth"), nb::arg("root") = 0,
+             "Copy words (uint32, report dialect) of a depth of 1 ... 16, whose root is word `root`. ValueError, "
+             "naming\n"
+             "the word: malformed.")
+        .def(nb::init<const OwnedMemory&, int, std::size_t>(), nb::arg("memory"), nb::arg("depth"), nb::arg("root"),
+             "Take the octree at another root of a memory's words, which are not copied.")
         .def(
             "render", &render_frame, nb::arg("materials"), nb::arg("camera"), nb::arg("width"), nb::arg("height"),
             nb::arg("threads") = 0, nb::arg("instructions") = "", nb::kw_only(), nb::arg("flat") = false,
@@ -357,7 +368,7 @@ NB_MODULE(_model, m) {
             "3), material (H, W), face (H, W), uint8, and words_read. lod_scale, 0 ... 2**20 - 1, of docs/lod.md;\n"
             "0 is off; else means, uint8, has a material per block, and there is no light and no bounce.\n"
             "ValueError: a frame above 16384 x 16384, pixel directions not below 2**20. TimeoutError: the frame takes\n"
-            "longer than `seconds`. InterruptedError: `stop` is set.")
+            "more work than an idle core does in `seconds`. InterruptedError: `stop` is set.")
         .def("trace", &trace_rays, nb::arg("origins"), nb::arg("directions"), nb::arg("threads") = 0,
              "Trace rays: origins (N, 3) int32 in 1/16 voxel, directions (N, 3) int32, components below 2**20.\n"
              "Returns material (N,), face (N,), uint8, cell (N, 3) int32 (-1 at a miss), and words_read.\n"

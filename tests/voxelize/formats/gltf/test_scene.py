@@ -312,6 +312,15 @@ def test_primitives_without_positions_are_counted(tmp_path):
     assert kinds(scene)["no-positions"] == 1
 
 
+def test_voxrt_ignore_leaves_an_object_out(tmp_path):
+    writer = two_coloured()
+    writer.show(mesh=0, name="own", extras={"voxrt_ignore": True})
+    writer.show(mesh=0, name="other", extras={"voxrt_ignore": False})
+    scene = load(writer.save(tmp_path / "a.glb"))
+    assert [one.name for one in scene.objects] == ["other"]
+    assert kinds(scene)["ignored"] == 1
+
+
 def test_voxrt_rule_is_the_rule_of_the_object(tmp_path):
     writer = two_coloured()
     writer.show(mesh=0, name="own", extras={"voxrt_rule": "centre"})

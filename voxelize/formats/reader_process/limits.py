@@ -1,12 +1,12 @@
-"""The memory and the time that reading a USD file may take.
+"""The memory and the time that reading a file in a process of its own may take.
 
 A file of a few kilobytes can ask for any amount of either: by references to itself, by counts in damaged tables. The
 process that reads it has a small allowance at first. Each file that it opens adds to it, in proportion to its size, so
 that large scenes are read and small files cannot take the machine.
 
 Memory is limited by ``RLIMIT_DATA``: what a process writes to, heap and stacks. ``RLIMIT_AS`` would count address
-space as well, of which usd-core reserves gigabytes for its threads and maps whole files. Time is limited twice: as
-time of the processor, which does not depend on what else the machine does, and as time of day, for a process that
+space as well, of which large libraries reserve gigabytes for their threads and map whole files. Time is limited twice:
+as time of the processor, which does not depend on what else the machine does, and as time of day, for a process that
 waits for ever.
 """
 
@@ -44,16 +44,21 @@ class Limits:
 
 
 class Request(msgspec.Struct, frozen=True, kw_only=True):
-    """The options and limits of ``read_isolated``, and the process id of its caller."""
+    """What any reader is asked: its limits, its caller's process id, and the options that all of them have."""
 
     parent: int
-    variants: tuple[str, ...]
+    output: int = 1  # the descriptor to which the reader writes its message
     time: float | None
     allow_outside: bool
     opaque_from: float
     memory: int
     most_memory: int
     seconds: float
+
+    @property
+    def limits(self) -> Limits:
+        """The limits."""
+        return Limits(self.memory, self.most_memory, self.seconds)
 
 
 class Allowance:

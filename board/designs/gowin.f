@@ -1,0 +1,22 @@
+// Sources of the Gowin designs, in the order in which tools must read them, after those of rtl/voxrt.f.
+board_pkg.sv
+gowin_cells.sv
+board_synchronizer.sv
+board_event.sv
+gowin_clocks.sv
+board_reset.sv
+board_table.sv
+board_bus.sv
+board_player.sv
+board_frames.sv
+board_unpacker.sv
+board_line_buffer.sv
+board_tmds.sv
+board_screen.sv
+gowin_serializer.sv
+board_crc32.sv
+board_uart.sv
+board_requests.sv
+board_control.sv
+board_system.sv
+gowin_top.sv

@@ -1,0 +1,37 @@
+"""Scenes of devices as the memories that worlds begin with, and back."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from voxrt.octree import Octree, Rom, census
+from voxrt.voxelize import Material
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from voxrt.board.scene import Scene
+
+
+def rom_of(scene: Scene) -> Rom:
+    """Give the memory of a scene, with the materials that it uses.
+
+    Materials whose names are not known are called by their ids.
+    """
+    octree = Octree(scene.depth, scene.words)
+    count = max(len(scene.names), 1 + max(census(octree).voxels))
+    names = ["empty", *(f"material {number}" for number in range(1, count))]
+    names[: len(scene.names)] = scene.names
+    rows = zip(names, scene.colours[:count].tolist(), scene.mirrors[:count].tolist(), strict=True)
+    return Rom(scene.name, octree, tuple(Material(name, tuple(colour), mirror) for name, colour, mirror in rows))
+
+
+def with_materials(scene: Scene, materials: Sequence[Material]) -> Scene:
+    """Give a scene other materials, by id."""
+    colours, mirrors = np.zeros((256, 3), np.uint8), np.zeros(256, np.bool_)
+    for number, material in enumerate(materials):
+        colours[number], mirrors[number] = material.colour, material.mirror
+    return replace(scene, colours=colours, mirrors=mirrors, names=tuple(material.name for material in materials))

@@ -1,0 +1,44 @@
+// Whether boxes meet solid voxels of an octree memory: what walking asks many times per picture.
+
+import { isLeaf, material } from "./voxrt/words.js";
+/** @import { Vector } from "./vectors.js" */
+
+/** `root`: the word of the root. @typedef {{ words: Uint32Array, depth: number, root: number }} Octree */
+
+/** Whether a box of any size, in voxels, overlaps a solid voxel; touching is no overlap. @param {Octree} octree @param
+ * {Vector} low @param {Vector} high */
+export function meetsSolid({ words, depth, root }, low, high) {
+  /** @param {number} word @param {number} x @param {number} y @param {number} z @param {number} side @returns {boolean} */
+  const meets = (word, x, y, z, side) => {
+    if (x >= high[0] || y >= high[1] || z >= high[2]) return false;
+    if (x + side <= low[0] || y + side <= low[1] || z + side <= low[2]) return false;
+    if (isLeaf(word)) return material(word) !== 0;
+    const half = side / 2;
+    for (let octant = 0; octant < 8; octant++) {
+      const corner = [x + (octant & 1) * half, y + ((octant >> 1) & 1) * half, z + (octant >> 2) * half];
+      if (meets(words[word + octant], corner[0], corner[1], corner[2], half)) return true;
+    }
+    return false;
+  };
+  return meets(root, 0, 0, 0, 2 ** depth);
+}
+
+/** Words that patches are written into. */
+export class PatchedWords {
+  /** @param {Uint32Array} words @param {number} depth */ constructor(words, depth) {
+    this.words = words.slice();
+    this.depth = depth;
+    this.root = words[0];
+  }
+
+  /** @param {import("./voxrt/world.js").Patch} patch */ apply({ rootWord, addresses, blocks }) {
+    const end = addresses.length ? addresses[addresses.length - 1] + 8 : 0;
+    if (end > this.words.length) {
+      const grown = new Uint32Array(2 * end);
+      grown.set(this.words);
+      this.words = grown;
+    }
+    for (const [i, address] of addresses.entries()) this.words.set(blocks.subarray(8 * i, 8 * i + 8), address);
+    this.root = rootWord;
+  }
+}
