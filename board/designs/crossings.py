@@ -169,11 +169,11 @@ def _read_cells(module: Mapping[str, Any]) -> tuple[list[_Element], dict[int, tu
             bits = _bits(cell, pin)
             if not bits:
                 continue
-            of_side = [
+            taken, launched = (
                 tuple(bit for other, bits in pins.items() if other != pin and _is_of(other, side) for bit in bits)
                 for pins in (inputs, outputs)
-            ]
-            elements.append(_Element(bits[0], *of_side, name))
+            )
+            elements.append(_Element(bits[0], taken, launched, name))
         if not clocks and cell["type"] not in _OUTSIDE:
             before = tuple(bit for bits in inputs.values() for bit in bits)
             drivers |= {bit: before for bits in outputs.values() for bit in bits}

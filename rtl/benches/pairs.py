@@ -25,7 +25,7 @@ VALUES: dict[str, tuple[int, ...]] = {
     "Light": (0, 1),
     "Mirrors": (0, 1),
     "Lod": (0, 1),
-    "RayClocks": (1, 4),
+    "RayClocks": (1, 4, 8),
     "Narrow": (0, 1),  # multipliers of 18 x 18 bits, which is no parameter
 }
 CACHED = 2
@@ -38,7 +38,7 @@ def is_allowed(row: Mapping[str, int]) -> bool:
     features = [row.get(name, 0) for name in ("Light", "Mirrors", "Lod")]
     if row.get("Lod", 0) and (row.get("Light", 0) or row.get("Mirrors", 0)):
         return False
-    if row.get("RayClocks", 1) == 4 and any(features):
+    if row.get("RayClocks", 1) > 1 and any(features):
         return False
     # Caches have sizes where there are caches.
     sizes = row.get("L1SetBits", 1) == row.get("L2SetBits", 1) == 1

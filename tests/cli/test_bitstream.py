@@ -31,7 +31,6 @@ def deep(tmp_path_factory):
         (["house.obj", "--seed", "2"], 2, "--seed is of the placement, which --rebuild makes; give both"),
         (["missing.glb"], 3, "missing.glb"),
         ([], 2, "neither an asset, a memory nor --selftest says what the board shows"),
-        (["--selftest", "--board", "tang-nano-20k"], 5, "there is no self-test for boards such as"),
         (["house.obj", "--selftest"], 2, "--selftest shows no scene; leave out the asset and --depth"),
     ],
 )
@@ -48,6 +47,10 @@ def test_the_self_test_of_a_board_is_packed(voxrt, folder):
     bits = Path(folder, result["bitstream"]).read_bytes()
     assert b"Part: LFE5U-25F-6CABGA256" in bits[:200]
     assert len(bits) > 20_000
+
+
+def test_a_board_without_a_self_test_is_refused(voxrt):
+    voxrt.fails(5, "there is no self-test for boards such as", "bitstream", "--selftest", "--board", "tang-nano-20k")
 
 
 def test_boards_without_a_design_are_refused(voxrt):
