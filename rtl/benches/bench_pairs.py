@@ -28,7 +28,7 @@ async def loaded(dut, voxels):
 
 
 def scene_of(dut):
-    """As large a random world as the memory holds for certain, of at most 8 voxels a side."""
+    """As large a random world as the memory holds for certain, of at most 8 voxels per side."""
     depth = 2 if int(dut.MaxDepth.value) == 2 or int(dut.BlockBits.value) == 5 else 3
     side = 1 << depth
     return depth, np.random.default_rng(21).choice([0, 0, 0, 0, 1, 2, 255], (side,) * 3).astype(np.uint8)
