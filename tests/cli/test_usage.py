@@ -35,7 +35,7 @@ import pytest
         (["build", "house.obj", "--unit", "inch"], "'inch' is not a number"),
         (["build", "house.obj", "--budget", "0"], "--budget must be an integer 1 "),
         (["build", "house.obj", "--budget", "9", "--board", "pynq-z1"], "exclude each other"),
-        (["build", "house.obj", "--board", "abacus"], "there are icepi-zero, pynq-z1, ulx3s-12f"),
+        (["build", "house.obj", "--board", "abacus"], "there are icepi-zero, pynq-z1, tang-nano-20k, ulx3s-12f"),
         (["build", "house.obj", "--time", "inf"], "--time must be a finite number, not inf"),
         (["build", "house.obj", "--fill", "half"], '"solid", "surface"'),
         (["build", "house.obj", "--size", "640x480x3"], "is not WIDTHxHEIGHT"),
