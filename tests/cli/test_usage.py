@@ -57,7 +57,7 @@ import pytest
         (["core", "--config", "tiny"], "--config and --verilog need each other"),
         (["core", "--verilog", "tiny.v"], "--config and --verilog need each other"),
         (["core", "--path", "--config", "tiny", "--verilog", "tiny.v"], "--path excludes"),
-        (["core", "--config", "huge", "--verilog", "huge.v"], "name one of tiny, micro, duo, quad"),
+        (["core", "--config", "huge", "--verilog", "huge.v"], "name one of tiny, micro, nano, duo, quad"),
         (["core", "--config", "tiny", "--verilog", "tiny.sv"], "ends in .v"),
         (["core", "--config", "tiny", "--verilog", "house.mtl/tiny.v"], "house.mtl is a file, not a folder"),
     ],
