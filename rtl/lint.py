@@ -71,6 +71,22 @@ def lint(what: str, top: str, arguments: list[str | Path]) -> bool:
     return finished.returncode == 0
 
 
+def lint_boards() -> bool:
+    """Lint the designs of the boards with few and many lanes, and their self-tests."""
+    lists = {
+        name: (DESIGNS / f"{name}.f").read_text().splitlines()
+        for name in ("ecp5", "ecp5_sdram", "gowin", "ecp5_selftest")
+    }
+    designs = {name: [DESIGNS / line for line in lines if line.endswith(".sv")] for name, lines in lists.items()}
+    tops = [
+        (top, f"{top} with {lanes} lanes", [f"-GLanes={lanes}", *list_sources(), *designs[name]])
+        for top, name in (("ecp5_top", "ecp5"), ("ecp5_top_sdram", "ecp5_sdram"), ("gowin_top", "gowin"))
+        for lanes in (1, 4)
+    ]
+    tops += [(top, top, list(designs["ecp5_selftest"])) for top in ("ecp5_selftest", "ecp5_selftest_sdram")]
+    return all(lint(what, top, [DESIGNS / "lint.vlt", *arguments]) for top, what, arguments in tops)
+
+
 def main() -> int:
     """Format or check it; lint all configurations, boards with each number of lanes, wrappers; give the exit code."""
     if not check_format(writes="--format" in sys.argv):
@@ -79,12 +95,8 @@ def main() -> int:
         settings = [f"-G{key}={value}" for key, value in configuration.parameters.items()]
         if not lint(f"configuration {name}", TOP, [*settings, *list_sources()]):
             return 1
-    for top, name in (("ecp5_top", "ecp5.f"), ("ecp5_top_sdram", "ecp5_sdram.f"), ("gowin_top", "gowin.f")):
-        designs = [DESIGNS / line for line in (DESIGNS / name).read_text().splitlines() if not line.startswith("//")]
-        for lanes in (1, 4):
-            arguments = [f"-GLanes={lanes}", DESIGNS / "lint.vlt", *list_sources(), *designs]
-            if not lint(f"{top} with {lanes} lanes", top, arguments):
-                return 1
+    if not lint_boards():
+        return 1
     for wrapper in ("voxrt_pynq_z1", "voxrt_zynq_cached"):
         if not lint(f"wrapper {wrapper}", wrapper, [VIVADO / "lint.vlt", *list_sources(), VIVADO / f"{wrapper}.v"]):
             return 1

@@ -20,9 +20,11 @@ from typing import TYPE_CHECKING, Any
 
 from voxrt.board.designs import gowin
 from voxrt.board.designs.base_design import GOWIN_WIDTHS, base_contents, find_slices, match_slices
-from voxrt.board.designs.description import GOWIN_TOP, VCO_MHZ, read_description
+from voxrt.board.designs.description import BIT_MHZ, GOWIN_TOP, VCO_MHZ, read_description
 from voxrt.board.designs.gowin_bitstream import read_block_rams
 from voxrt.board.designs.multiplier_registers import use_multiplier_registers
+from voxrt.board.designs.netlist_structure import structure_digest
+from voxrt.board.designs.placement import crossing_delays, write_placement
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -35,10 +37,21 @@ RTL = DESIGNS.parents[1] / "rtl"
 HEADER = RTL / "voxrt_assert.svh"
 """The sources of the core include it."""
 TOP = "ecp5_top"
-SOURCE_LISTS = {"ecp5_top": "ecp5.f", "ecp5_top_sdram": "ecp5_sdram.f", GOWIN_TOP: "gowin.f"}
-"""The file that lists the sources of a design, by its top."""
+SELFTESTS = {"ecp5_top": "ecp5_selftest", "ecp5_top_sdram": "ecp5_selftest_sdram"}
+"""The top of the self-test of a board, by the top of the board's design."""
+_CORE, _SELFTEST = (RTL, "voxrt.f"), (DESIGNS, "ecp5_selftest.f")
+SOURCE_LISTS = {
+    "ecp5_top": (_CORE, (DESIGNS, "ecp5.f")),
+    "ecp5_top_sdram": (_CORE, (DESIGNS, "ecp5_sdram.f")),
+    GOWIN_TOP: (_CORE, (DESIGNS, "gowin.f")),
+    "ecp5_selftest": (_SELFTEST,),
+    "ecp5_selftest_sdram": (_SELFTEST,),
+}
+"""The files that list the sources of a design, by its top."""
 TABLE_WORDS = 4096
-_CLOCKS = {"system": "system_clk", "pixel": "pixel_clk", "bit": "bit_clk"}
+_SAME_CLOCK = 1e-3  # nextpnr rounds periods to picoseconds
+PIXEL_MHZ = 25
+"""The pixel clock, which board_pll.sv divides for all boards."""
 
 
 def board_file(name: str) -> Path:
@@ -75,8 +88,28 @@ def board_names() -> list[str]:
     return sorted(path.parent.name for path in DESIGNS.glob("*/board.json"))
 
 
+def selftest_names() -> list[str]:
+    """Give the names of the boards that have a self-test."""
+    return [name for name in board_names() if top_of(read_board(name)) in SELFTESTS]
+
+
+def selftest_of(board: Mapping[str, Any]) -> dict[str, Any]:
+    """Give the self-test of a board, as `read_board` gives a board: another top, without a ray tracer.
+
+    Raises
+    ------
+    ValueError
+        There is none for boards of this kind.
+    """
+    if top_of(board) not in SELFTESTS:
+        raise ValueError(f"there is no self-test for boards such as {board['title']}; there are those of ECP5 boards")
+    return {**board, "top": SELFTESTS[top_of(board)], "core": {}}
+
+
 def memories(board: Mapping[str, Any]) -> dict[str, tuple[int, int]]:
     """Give rows and bits of the memories that a scene is patched into, by name."""
+    if top_of(board) in SELFTESTS.values():
+        return {}
     block_bits = board.get("boot_block_bits", board["core"]["BlockBits"])
     return {"octree": (8 << block_bits, max(block_bits, 9) + 1), "table": (TABLE_WORDS, 32)}
 
@@ -85,6 +118,19 @@ def clock_hz(board: Mapping[str, Any]) -> int:
     """Give the system clock of a board."""
     vco_mhz = gowin.VCO_MHZ if is_gowin(board) else VCO_MHZ
     return vco_mhz * 1_000_000 // int(board["pll"]["system_divider"])
+
+
+def clock_names(board: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, str]:
+    """Name the clocks of a report of nextpnr, by the net: `system`, `pixel` and `bit`, as their frequencies say."""
+    if is_gowin(board):
+        return {net: clock for clock in ("system", "pixel", "bit") for net in report["fmax"] if f"{clock}_clk" in net}
+    frequencies = {"system": clock_hz(board) / 1e6, "pixel": PIXEL_MHZ, "bit": BIT_MHZ}
+    return {
+        net: clock
+        for clock, mhz in frequencies.items()
+        for net, found in report["fmax"].items()
+        if abs(found["constraint"] / mhz - 1) < _SAME_CLOCK
+    }
 
 
 def top_of(board: Mapping[str, Any]) -> str:
@@ -114,7 +160,7 @@ def list_sources(top: str = TOP) -> list[Path]:
     """Give the sources of a design, in the order in which tools must read them."""
     return [
         folder / line
-        for folder, name in ((RTL, "voxrt.f"), (DESIGNS, SOURCE_LISTS[top]))
+        for folder, name in SOURCE_LISTS[top]
         for line in (folder / name).read_text().splitlines()
         if line.endswith(".sv")
     ]
@@ -134,7 +180,7 @@ def parameters(board: Mapping[str, Any]) -> dict[str, int]:
     if is_gowin(board):
         return gowin.parameters(board)
     pll, pins = board["pll"], board["pins"]
-    keys = {"line_bits": "LineBits", "boot_block_bits": "BootBlockBits"}
+    keys = {"line_bits": "LineBits", "boot_block_bits": "BootBlockBits"} if memories(board) else {}
     return {
         "InputDivider": pll["input_divider"],
         "FeedbackDivider": pll["feedback_divider"],
@@ -210,7 +256,7 @@ def synthesize(
         (folder / "sources" / path.name).write_text(path.read_text())
     copies = [f"sources/{path.name}" for path in read]
     settings = " ".join(f"-G {name}={value}" for name, value in parameters(board).items()) if sources is None else ""
-    files = '-G OctreeFile="octree.hex" -G TableFile="table.hex"'
+    files = " ".join(f'-G {name.capitalize()}File="{name}.hex"' for name in contents)
     script = (
         f"read_slang --threads 1 -D VOXRT_NARROW_MULTIPLIERS --top {top} {settings} {files} {' '.join(copies)}\n"
         f"{gowin.SYNTHESIS if is_gowin(board) else 'synth_ecp5'} -top {top} -json top.json\n"
@@ -247,12 +293,8 @@ def place_and_route(board: Mapping[str, Any], seed: int, folder: Path, *, write_
 def describe(board: Mapping[str, Any], name: str, seed: int, folder: Path) -> dict[str, Any]:
     """Give the content of `base.json`."""
     report = json.loads((folder / "report.json").read_text())
-    fmax = {
-        clock: round(found["achieved"], 2)
-        for clock, part in _CLOCKS.items()
-        for net, found in report["fmax"].items()
-        if part in net
-    }
+    clocks = clock_names(board, report)
+    fmax = {clock: round(report["fmax"][net]["achieved"], 2) for net, clock in clocks.items()}
     more: dict[str, Any] = {}
     if is_gowin(board):
         rams = gowin.find_block_rams(board, json.loads((folder / "placed.json").read_text()))
@@ -265,13 +307,15 @@ def describe(board: Mapping[str, Any], name: str, seed: int, folder: Path) -> di
         "board": name,
         "core": board["core"],
         "clock_hz": clock_hz(board),
-        **({"line_bits": board["line_bits"]} if "line_bits" in board else {}),
+        **({"line_bits": board["line_bits"]} if "line_bits" in board and memories(board) else {}),
         "seed": seed,
         "fmax_mhz": fmax,
+        "crossings_ns": crossing_delays(report, clocks),
         "utilisation": {
             cell: [count["used"], count["available"]] for cell, count in report["utilization"].items() if count["used"]
         },
         "sources": sources_digest(board),
+        "structure": structure_digest(json.loads((folder / "top.json").read_text()), top_of(board)),
         "tools": {tool: version(tool) for tool in (name.replace("_", "-") for name in tools_of(board))},
         **more,
         "memories": {
@@ -281,7 +325,9 @@ def describe(board: Mapping[str, Any], name: str, seed: int, folder: Path) -> di
     }
 
 
-def build(name: str, folder: Path, *, seed: int | None = None, write_netlist: bool = False) -> dict[str, Any]:
+def build(
+    name: str, folder: Path, *, seed: int | None = None, write_netlist: bool = False, selftest: bool = False
+) -> dict[str, Any]:
     """Build the base design of a board in a folder, and give the content of its `base.json`.
 
     Parameters
@@ -294,13 +340,15 @@ def build(name: str, folder: Path, *, seed: int | None = None, write_netlist: bo
         Of the placement; None: the board's own.
     write_netlist
         Write `placed.json`, the netlist after place and route, too.
+    selftest
+        Build the self-test of the board.
 
     Raises
     ------
     RuntimeError
         A tool failed.
     """
-    board = read_board(name)
+    board = selftest_of(read_board(name)) if selftest else read_board(name)
     chosen = board["seed"] if seed is None else seed
     synthesize(board, {memory: base_contents(memory, *size) for memory, size in memories(board).items()}, folder)
     place_and_route(board, chosen, folder, write_netlist=write_netlist)
@@ -321,18 +369,21 @@ def main() -> None:
     parser.add_argument("--seed", type=int, help="of the placement; the board's own if absent")
     parser.add_argument("--folder", type=Path, default=Path("build", "board"), help="for what the tools write")
     parser.add_argument("--netlist", action="store_true", help="write the netlist after place and route, too")
+    parser.add_argument("--selftest", action="store_true", help="build the self-test of the board")
     parser.add_argument("--keep", action="store_true", help="leave the base design as it is: for trials of seeds")
     options = parser.parse_args()
     place = board_file(options.name).parent
-    folder = options.folder / place.name
+    name = "selftest" if options.selftest else "base"
+    folder = options.folder / (f"{place.name}-selftest" if options.selftest else place.name)
     folder.mkdir(parents=True, exist_ok=True)
-    described = build(options.name, folder, seed=options.seed, write_netlist=options.netlist)
-    print(json.dumps({key: described[key] for key in ("seed", "fmax_mhz", "utilisation")}))
+    described = build(options.name, folder, seed=options.seed, write_netlist=options.netlist, selftest=options.selftest)
+    print(json.dumps({key: described[key] for key in ("seed", "fmax_mhz", "crossings_ns", "utilisation")}))
+    write_placement(described, folder, place / "placements" / f"{name}-{described['seed']}.json.bz2")
     if options.keep:
         return
-    (place / "base.json").write_text(json.dumps(described, indent=1) + "\n")
     kind = config_kind(read_board(options.name))
-    (place / f"base.{kind}.bz2").write_bytes(bz2.compress((folder / f"top.{kind}").read_bytes()))
+    (place / f"{name}.json").write_text(json.dumps(described, indent=1) + "\n")
+    (place / f"{name}.{kind}.bz2").write_bytes(bz2.compress((folder / f"top.{kind}").read_bytes()))
 
 
 if __name__ == "__main__":

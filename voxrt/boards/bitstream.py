@@ -55,6 +55,8 @@ class BaseDesign(msgspec.Struct, frozen=True):
     tools: dict[str, str]
     memories: dict[str, Memory]
     line_bits: int = 0
+    structure: str = ""
+    crossings_ns: dict[str, float] = msgspec.field(default_factory=dict)
     pixel_hz: int = 25_000_000
     block_rams: BlockRams | None = None  # of a Gowin GW2A, whose bitstream itself is patched
 
@@ -109,38 +111,39 @@ def board_names() -> list[str]:
     return design_build.board_names()
 
 
-def read_board(name: str) -> PlacedBoard:
-    """Read the placed design of a board, by its name or by the path of its ``board.json``.
+def read_board(name: str, *, selftest: bool = False) -> PlacedBoard:
+    """Read the placed design of a board, or its self-test, by the board's name or by the path of its ``board.json``.
 
     ToolError if no placed design stands beside the description, or one of other sources, pins or parameters.
     """
-    described = _describe(name)
+    described = _describe(name, selftest=selftest)
     folder = design_build.board_file(name).parent
-    base = folder / f"base.{design_build.config_kind(described)}.bz2"
-    if not (folder / "base.json").is_file() or not base.is_file():
+    stem, what, option = ("selftest", "self-test", " --selftest") if selftest else ("base", "design", "")
+    config = folder / f"{stem}.{design_build.config_kind(described)}.bz2"
+    if not (folder / f"{stem}.json").is_file() or not config.is_file():
         own = folder.parent != design_build.DESIGNS
-        builds = f" once, by python -m voxrt.board.designs.build {name}, or" if own else ""
-        raise ToolError(f"there is no placed design for {name}: build it{builds} with --rebuild")
-    design = msgspec.json.decode((folder / "base.json").read_bytes(), type=BaseDesign)
+        builds = f" once, by python -m voxrt.board.designs.build {name}{option}, or" if own else ""
+        raise ToolError(f"there is no placed {what} for {name}: build it{builds} with --rebuild")
+    design = msgspec.json.decode((folder / f"{stem}.json").read_bytes(), type=BaseDesign)
     # The tests compare those that voxrt brings.
     if folder.parent != design_build.DESIGNS and design.sources != design_build.sources_digest(described):
         raise ToolError(
-            f"{folder / 'base.json'}: placed from another board.json or another voxrt; "
-            f"python -m voxrt.board.designs.build {name} makes it anew"
+            f"{folder / stem}.json: placed from another board.json or another voxrt; "
+            f"python -m voxrt.board.designs.build {name}{option} makes it anew"
         )
-    return _placed(folder.name, described, design, bz2.decompress(base.read_bytes()).decode())
+    return _placed(folder.name, described, design, bz2.decompress(config.read_bytes()).decode())
 
 
-def rebuild_board(name: str, folder: Path, seed: int | None = None) -> PlacedBoard:
-    """Synthesize, place and route the design of a board in an empty folder, which takes minutes.
+def rebuild_board(name: str, folder: Path, seed: int | None = None, *, selftest: bool = False) -> PlacedBoard:
+    """Synthesize, place and route the design of a board, or its self-test, in an empty folder, which takes minutes.
 
     `seed` is that of the placement; None for the board's own. ToolError if yosys or nextpnr is missing, or has failed.
     """
-    described = _describe(name)
+    described = _describe(name, selftest=selftest)
     for package, program in design_build.tools_of(described).items():
         _need(package, program)
     try:
-        design = msgspec.convert(design_build.build(name, folder, seed=seed), BaseDesign)
+        design = msgspec.convert(design_build.build(name, folder, seed=seed, selftest=selftest), BaseDesign)
     except RuntimeError as error:
         raise ToolError(str(error).splitlines()[0]) from error
     return _placed(design.board, described, design, (folder / f"top.{design_build.config_kind(described)}").read_text())
@@ -225,9 +228,10 @@ def load_bitstream(board: PlacedBoard, file: Path, progress: Callable[[str], Non
         progress(lines[-1])
 
 
-def _describe(name: str) -> dict[str, Any]:
+def _describe(name: str, *, selftest: bool) -> dict[str, Any]:
     try:
-        return design_build.read_board(name)
+        board = design_build.read_board(name)
+        return design_build.selftest_of(board) if selftest else board
     except ValueError as error:
         raise ToolError(str(error)) from error
 

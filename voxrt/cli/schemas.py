@@ -6,7 +6,7 @@ from typing import Any
 
 import msgspec
 
-from voxrt.cli.results.board_results import ServeResult, UploadResult
+from voxrt.cli.results.board_results import CheckResult, ReportResult, ServeResult, UploadResult
 from voxrt.cli.results.build_results import BuildReport, RenderResult
 from voxrt.cli.results.memory_results import (
     CompareResult,
@@ -28,6 +28,8 @@ _RESULTS = (
     TraceResult,
     ServeResult,
     UploadResult,
+    CheckResult,
+    ReportResult,
 )
 
 

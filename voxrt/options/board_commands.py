@@ -1,4 +1,4 @@
-"""The command lines of what runs on hardware: serve, upload, bitstream and core."""
+"""The command lines of what runs on hardware: serve, upload, bitstream, board and core."""
 
 from __future__ import annotations
 
@@ -68,8 +68,8 @@ class UploadCommand:
 class BitstreamCommand:
     """What ``voxrt bitstream`` takes."""
 
-    source: Path = option(file("ASSET|ROM"), MISSING, ARGUMENTS,
-        "An asset, or a memory: .mem or another format, with its manifest beside it.")
+    source: Path | None = option(file("ASSET|ROM"), None, ARGUMENTS,
+        "An asset, or a memory: .mem or another format, with its manifest beside it. Leave it out with {selftest}.")
     board: str = option(text("NAME"), MISSING, HARDWARE,
         "Name of the board, such as ulx3s-85f. Or the path of a board.json, which describes a board of yours.")
     output: Path = option(file("DIR"), Path(), OUTPUT,
@@ -77,8 +77,26 @@ class BitstreamCommand:
     depth: int | None = DEPTH.field(help="Levels of the octree of an asset. The default is 7.")
     load: bool = option(FLAG, False, HARDWARE,
         "Load the bitstream into the board that is plugged in, by openFPGALoader.")
+    selftest: bool = option(FLAG, False, HARDWARE,
+        "Make the self-test of the board: colour bars, buttons, LEDs, serial line and SDRAM, without a scene. voxrt "
+        "board check reads its results.")
     rebuild: bool = option(FLAG, False, HARDWARE, "Synthesize, place and route the design anew. It takes minutes.")
     seed: int | None = option(INTEGER, None, HARDWARE, "The seed of the placement, with {rebuild}.")
+    reporting: ReportOptions = nested(ReportOptions)
+
+
+@dataclass(frozen=True, kw_only=True)
+class BoardCommand:
+    """What ``voxrt board`` takes."""
+
+    action: Literal["check", "report"] = option(one_of(("check", "report")), MISSING, ARGUMENTS,
+        "check: read the results of the self-test that runs on the board, and say what to do. report: print what to "
+        "paste into an issue.")
+    device: str = option(text("serial:PORT|tcp://BOARD:PORT"), MISSING, ARGUMENTS,
+        "The board: a serial line, such as serial:/dev/ttyUSB0; for report also a PYNQ board that runs voxrt-board, "
+        "such as tcp://pynq:4810, with its token in the environment variable VOXRT_BOARD_TOKEN.")
+    views: int = option(whole(1, 128), 8, HARDWARE,
+        "How many views report compares with the exact model.")
     reporting: ReportOptions = nested(ReportOptions)
 
 

@@ -67,6 +67,12 @@ COMMANDS = {
         "The scene is written into the block RAMs of a design that is placed and routed already. NAME.bit and its "
         "report NAME.report.json are written.",
     ),
+    "board": Command(
+        "Check a board by its self-test, or report what runs on it.",
+        "board_commands:BoardCommand",
+        "voxrt board check serial:/dev/ttyUSB0",
+        "voxrt bitstream --board NAME --selftest --load puts the self-test on the board.",
+    ),
     "convert": Command(
         "Write a memory or an asset in another format. The suffixes of the files say which.",
         "memory_commands:ConvertCommand",

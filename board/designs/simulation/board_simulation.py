@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.board.designs.build import RTL, list_sources, parameters, top_of
+from voxrt.board.designs.build import RTL, SELFTESTS, list_sources, memories, parameters, top_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _HERE = Path(__file__).resolve().parent
-_CHIPS = {"ecp5_top_sdram"}  # Tops whose pins need an SDRAM ...
+_CHIPS = {"ecp5_top_sdram", "ecp5_selftest_sdram"}  # Tops whose pins need an SDRAM ...
 _CHIP = (_HERE / "sdram_model.sv", _HERE / "sdram_board.sv")  # ... as here.
 
 
@@ -61,7 +61,7 @@ def compile_sources(
     Parameters
     ----------
     board
-        As `read_board` gives it.
+        As `read_board` or `selftest_of` gives it.
     folder
         Where to; `octree.hex` and `table.hex` in the folder in which the program starts are what the memories hold.
     extra, top
@@ -72,7 +72,8 @@ def compile_sources(
     """
     numbers = {**parameters(board), **more} if top is None else more
     settings = [f"-G{name}={value}" for name, value in numbers.items()]
-    settings += ['-GOctreeFile="octree.hex"', '-GTableFile="table.hex"']
+    settings += [f'-G{name.capitalize()}File="{name}.hex"' for name in memories(board)]
+    settings += ["-DSELFTEST"] if top_of(board) in SELFTESTS.values() else []
     sources = list_sources(top_of(board))
     if top is None and top_of(board) in _CHIPS:
         sources, top = [*sources, *_CHIP], _CHIP[-1].stem

@@ -16,6 +16,9 @@ module sdram_board #(
   parameter int unsigned RayClocks       = 1,
   parameter int unsigned BootBlockBits   = 12,
   parameter int unsigned PowerOnUs       = 200,
+  parameter int unsigned LineBits        = 20,
+  parameter int unsigned WindowBits      = 20,
+  parameter int unsigned StuckData       = 0,   // Bits of the chip's data that are always 1.
   parameter int unsigned GapBits         = 22,
   parameter bit          ButtonsLow      = 1'b0,
   parameter int unsigned Leds            = 8,
@@ -38,6 +41,19 @@ module sdram_board #(
 
 `ifdef PLACED
   top u_board (
+`elsif SELFTEST
+  ecp5_selftest_sdram #(
+    .InputDivider(InputDivider),
+    .FeedbackDivider(FeedbackDivider),
+    .SystemDivider(SystemDivider),
+    .LineBits(LineBits),
+    .PowerOnUs(PowerOnUs),
+    .GapBits(GapBits),
+    .WindowBits(WindowBits),
+    .ButtonsLow(ButtonsLow),
+    .Leds(Leds),
+    .Highs(Highs)
+  ) u_board (
 `else
   ecp5_top_sdram #(
     .InputDivider(InputDivider),
@@ -82,7 +98,7 @@ module sdram_board #(
     .sdram_d
   );
 
-  assign sdram_d = answers ? answer : 16'bz;
+  assign sdram_d = answers ? answer | 16'(StuckData) : 16'bz;
 
   // Who drives when cannot be seen here: tests/board/sdram_bench.sv looks at it.
   sdram_model #(

@@ -11,7 +11,7 @@ import msgspec
 
 import voxrt
 from voxrt.cli.inputs.lighting import supported
-from voxrt.cli.results.bitstream_results import BitstreamResult, bitstream_result
+from voxrt.cli.results.bitstream_results import bitstream_result, selftest_result
 from voxrt.cli.results.build_results import print_json
 from voxrt.cli.terminal.errors import UsageError
 from voxrt.cli.terminal.messages import budget_loss, budget_text, summarize, warn
@@ -21,25 +21,58 @@ from voxrt.options.notations import find_board
 
 if TYPE_CHECKING:
     from voxrt.boards.bitstream import PlacedBoard
+    from voxrt.cli.results.bitstream_results import BitstreamResult, PlacedResult
     from voxrt.export import Blob
     from voxrt.options.board_commands import BitstreamCommand
 
 
 def run(options: BitstreamCommand) -> None:
-    """Make the bitstream of a board that shows a scene, turning, on its monitor."""
+    """Make the bitstream of a board that shows a scene, turning, on its monitor, or that of its self-test."""
+    if options.seed is not None and not options.rebuild:
+        raise UsageError("--seed is of the placement, which --rebuild makes; give both")
+    if options.selftest:
+        if options.source is not None or options.depth is not None:
+            raise UsageError("--selftest shows no scene; leave out the asset and --depth")
+        _make_selftest(options)
+    elif options.source is None:
+        raise UsageError("neither an asset, a memory nor --selftest says what the board shows; give one of them")
+    else:
+        _make_scene(options, options.source)
+
+
+def _make_selftest(options: BitstreamCommand) -> None:
+    from voxrt.boards.bitstream import find_loader, load_bitstream, pack  # noqa: PLC0415 - NumPy comes with it
+
+    check_folder(options.output)
+    if options.load:
+        find_loader()
+    placed = _place(_find_board(options.board), options.seed, rebuild=options.rebuild, selftest=True)
+    file = options.output / f"{placed.name}-selftest.bit"
+    _write_bits(file, pack(placed, placed.config))
+    result = selftest_result(placed, file)
+    summarize(
+        f"self-test of {placed.name}:",
+        [*board_rows(result, ""), ("wrote", result.bitstream), ("then", "voxrt board check serial:PORT")],
+    )
+    if options.load:
+        load_bitstream(placed, file)
+        summarize(f"{file.name}:", [("loaded", placed.title)])
+    if options.reporting.json:
+        print_json(result)
+
+
+def _make_scene(options: BitstreamCommand, source: Path) -> None:
     from voxrt.boards.beam import SCREEN, SMALL, fit_beam, fit_frames  # noqa: PLC0415
     from voxrt.boards.bitstream import find_loader, load_bitstream, make_bitstream  # noqa: PLC0415 - NumPy comes with it
     from voxrt.boards.board_scenes import board_scene  # noqa: PLC0415
     from voxrt.views.viewpoint import orbit  # noqa: PLC0415
 
-    if options.seed is not None and not options.rebuild:
-        raise UsageError("--seed is of the placement, which --rebuild makes; give both")
     check_folder(options.output)
     if options.load:
         find_loader()
     placed = _place(_find_board(options.board), options.seed, rebuild=options.rebuild)
     design = placed.design
-    blob, budget = read_memory(options.source, options.depth, placed)
+    blob, budget = read_memory(source, options.depth, placed)
     features = {name for name in ("light", "mirrors") if design.core[name.capitalize()]}
     lighting = supported(blob.lighting or voxrt.Lighting(), features)
     roots = (0,) if blob.animation is None else blob.animation.roots
@@ -48,13 +81,13 @@ def run(options: BitstreamCommand) -> None:
         count = partial(progress, "count cycles")
         beam = fit(blob.rom, orbit(blob.rom, size, roots=roots), lighting, design.tracer, progress=count)
     bits = make_bitstream(placed, board_scene(blob), orbit(blob.rom, beam.size, roots=roots), lighting, beam)
-    file, report = (options.output / f"{options.source.stem}{suffix}" for suffix in (placed.suffix, ".report.json"))
+    file, report = (options.output / f"{source.stem}{suffix}" for suffix in (placed.suffix, ".report.json"))
     result = bitstream_result(blob.rom, placed, beam, file, budget)
     _write(file, bits, report, result)
     rows = summary_rows(result, report)
     if budget is not None:
-        rows[-2:-2] = budget_rows(budget, options.source, result.depth, frame_buffer=design.frame_buffer)
-    summarize(f"{options.source.name}:", rows)
+        rows[-2:-2] = budget_rows(budget, source, result.depth, frame_buffer=design.frame_buffer)
+    summarize(f"{source.name}:", rows)
     if options.load:
         load_bitstream(placed, file)
         summarize(f"{file.name}:", [("loaded", placed.title)])
@@ -74,14 +107,14 @@ def _find_board(name: str) -> str:
         raise UsageError(f"--board: {error}; or give the path of a board.json") from error
 
 
-def _place(name: str, seed: int | None, *, rebuild: bool) -> PlacedBoard:
+def _place(name: str, seed: int | None, *, rebuild: bool, selftest: bool = False) -> PlacedBoard:
     from voxrt.boards.bitstream import read_board, rebuild_board  # noqa: PLC0415
 
     if not rebuild:
-        return read_board(name)
+        return read_board(name, selftest=selftest)
     with stage_bar(1) as begin, tempfile.TemporaryDirectory(prefix="voxrt-") as folder:
         begin("synthesize, place and route")
-        return rebuild_board(name, Path(folder), seed)
+        return rebuild_board(name, Path(folder), seed, selftest=selftest)
 
 
 def read_memory(source: Path, depth: int | None, placed: PlacedBoard) -> tuple[Blob, voxrt.BudgetFit | None]:
@@ -124,12 +157,18 @@ def read_memory(source: Path, depth: int | None, placed: PlacedBoard) -> tuple[B
     return blob, None
 
 
-def _write(file: Path, bits: bytes, report: Path, result: BitstreamResult) -> None:
+def _write_bits(file: Path, bits: bytes) -> None:
     from voxrt.export.atomic import write_atomically  # noqa: PLC0415
 
     with writing(file):
         file.parent.mkdir(parents=True, exist_ok=True)
         write_atomically(file, bits)
+
+
+def _write(file: Path, bits: bytes, report: Path, result: BitstreamResult) -> None:
+    from voxrt.export.atomic import write_atomically  # noqa: PLC0415
+
+    _write_bits(file, bits)
     with writing(report):
         write_atomically(report, msgspec.json.format(msgspec.json.encode(result), indent=1) + b"\n")
 
@@ -158,12 +197,8 @@ def summary_rows(result: BitstreamResult, report: Path) -> list[tuple[str, str]]
         cycles += f"rows are complete {result.lead_lines:.1f} lines before they are shown, or earlier"
     else:
         cycles += "some rows are repeated, because the next ones are late"
-    reached, needed = result.fmax_mhz["system"], result.clock_hz / 1e6
-    clock = f"place and route reach {reached:.1f} of {needed:.1f} MHz: the board may fail; try another --seed"
     return [
-        ("board", f"{result.title}, {lanes}, {result.clock_hz / 1e6:.1f} MHz"),
-        *([("revision", _revision_text(result))] if result.revision else []),
-        *([("clock", clock)] if reached < needed else []),
+        *board_rows(result, f", {lanes}"),
         ("scene", f"{result.words:,} of {result.capacity:,} words, depth {result.depth}"),
         ("picture", f"{width} x {height}{squares}, {result.frames_per_second:.1f} frames per second"),
         ("cycles", cycles),
@@ -172,6 +207,17 @@ def summary_rows(result: BitstreamResult, report: Path) -> list[tuple[str, str]]
     ]
 
 
-def _revision_text(result: BitstreamResult) -> str:
+def board_rows(result: PlacedResult, lanes: str) -> list[tuple[str, str]]:
+    """Give the rows of the board and of its clock."""
+    reached, needed = result.fmax_mhz["system"], result.clock_hz / 1e6
+    clock = f"place and route reach {reached:.1f} of {needed:.1f} MHz: the board may fail; try another --seed"
+    return [
+        ("board", f"{result.title}{lanes}, {result.clock_hz / 1e6:.1f} MHz"),
+        *([("revision", _revision_text(result))] if result.revision else []),
+        *([("clock", clock)] if reached < needed else []),
+    ]
+
+
+def _revision_text(result: PlacedResult) -> str:
     others = f"; {result.other_revisions}" if result.other_revisions else ""
     return f"the design is for {result.revision}{others}"

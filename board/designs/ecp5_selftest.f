@@ -1,0 +1,21 @@
+// Sources of the self-test, in the order in which tools must read them. It has no ray tracer.
+board_pkg.sv
+ecp5_cells.sv
+board_synchronizer.sv
+board_event.sv
+board_clock_meter.sv
+board_pll.sv
+board_reset.sv
+board_tmds.sv
+board_screen.sv
+board_serializer.sv
+board_bars.sv
+board_crc32.sv
+board_uart.sv
+board_requests.sv
+board_sdram.sv
+board_sdram_pins.sv
+board_sdram_test.sv
+board_selftest.sv
+ecp5_selftest.sv
+ecp5_selftest_sdram.sv
