@@ -74,7 +74,7 @@ def find_block_rams(board: Mapping[str, Any], netlist: Mapping[str, Any]) -> Blo
 
     They have the order of `block_ram_cells`.
     """
-    from apycula.chipdb import load_chipdb  # type: ignore[import-not-found]  # noqa: PLC0415 - it may be absent
+    from apycula.chipdb import load_chipdb  # noqa: PLC0415 - it may be absent
 
     part = load_chipdb(str(files("apycula") / f"{board['part']}.msgpack.xz"))
     table = part.rev_logicinfo("BSRAM_INIT")

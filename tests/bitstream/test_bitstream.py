@@ -15,7 +15,7 @@ import pytest
 import voxrt
 from voxrt.board.designs import build
 from voxrt.board.designs.base_design import GOWIN_WIDTHS, base_contents, find_slices, match_slices, patch_config
-from voxrt.board.designs.boot_table import CAMERAS
+from voxrt.board.designs.boot_table import CAMERAS, encode_octree
 from voxrt.board.designs.gowin_bitstream import read_block_rams
 from voxrt.boards.beam import BeamFit
 from voxrt.boards.bitstream import BaseDesign, Memory, PlacedBoard, board_names, make_bitstream, read_board
@@ -145,6 +145,26 @@ def test_the_placed_designs_are_of_the_present_sources(name):
     assert {memory: tuple(slices) for memory, slices in words.items()} == {
         memory: found.slices for memory, found in board.design.memories.items()
     }
+
+
+def test_the_bitstream_of_a_gowin_holds_the_scene_and_needs_no_tool(monkeypatch):
+    monkeypatch.setattr(subprocess, "run", None)
+    board = read_board("tang-nano-20k")
+    rom = voxrt.build("examples/house.obj", depth=5).rom
+    scene, beam = board_scene(Blob(rom)), BeamFit(1, 10.0, 1.0, 60.0)
+    bits = make_bitstream(board, scene, orbit(rom, (320, 240), CAMERAS), voxrt.Lighting(), beam)
+    rams = read_block_rams(bits.decode(), board.design.block_rams)
+    octree = np.zeros(board.design.capacity - 1, np.int64)
+    for piece in board.design.memories["octree"].slices:
+        # A block RAM of 16,384 x 1 bits: 16 of them per row, which has 18.
+        assert (piece.bits, piece.row, piece.rows) == (1, 0, 16384)
+        rows = rams[piece.wid].astype(np.int64)
+        octree |= (
+            np.concatenate([rows[:, None] >> np.arange(8) & 1, rows[:, None] >> np.arange(9, 17) & 1], 1).ravel()
+            << piece.bit
+        )
+    assert np.array_equal(octree, encode_octree(scene.words, board.design.block_bits))
+    assert board.suffix == ".fs"
 
 
 def test_a_board_without_a_placed_design_says_so(monkeypatch, tmp_path):

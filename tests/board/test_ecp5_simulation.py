@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fakes.board_host import Host, cameras_around, picture
+from fakes.board_host import Host, SimulatedPort, cameras_around, picture
 from oracles.verilator import needs_compiled_verilator
 
 from voxrt.board.designs import serial_device
@@ -112,26 +112,6 @@ def test_a_scene_is_swapped_between_two_frames(program, scenes, tmp_path):
         assert np.array_equal(after, picture(new, camera, SCALE))
         assert host.register("play") >> 31 == 0
         assert host.register("refused") == 0
-
-
-class SimulatedPort:
-    """The serial port of the driver, at a simulated board."""
-
-    def __init__(self, board):
-        self.board, self.answer = board, b""
-
-    def write(self, data):
-        self.board.send(data)
-
-    def read(self, count):
-        quiet = 0
-        while len(self.answer) < count and quiet < 60:  # a request takes 86,000 clocks
-            self.board.run(2000)
-            came = self.board.received()
-            quiet = 0 if came else quiet + 1
-            self.answer += came
-        found, self.answer = self.answer[:count], self.answer[count:]
-        return found
 
 
 @pytest.mark.slow

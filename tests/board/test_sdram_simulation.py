@@ -11,9 +11,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fakes.board_host import Host, cameras_around, picture
+from fakes.board_host import Host, SimulatedPort, cameras_around, picture
 from oracles.verilator import needs_compiled_verilator
 
+from voxrt.board.designs import serial_device
 from voxrt.board.designs.boot_table import (
     BOARD_REGISTERS,
     OCTREE_MEMORY,
@@ -29,11 +30,16 @@ from voxrt.board.designs.boot_table import (
     scene_writes,
 )
 from voxrt.board.designs.build import read_board
+from voxrt.board.designs.serial_device import SerialDevice
+from voxrt.board.designs.serial_link import SerialLink
 from voxrt.board.designs.simulation.board_simulation import BoardSimulation, compile_sources
+from voxrt.board.edited_scene import rom_of
 from voxrt.board.register_writes import camera_writes
+from voxrt.board.scene_memory import SceneMemory
+from voxrt.board.simulated.model import ModelDevice
 from voxrt.board.view import Lighting
 from voxrt.boards.board_scenes import load_scene
-from voxrt.octree import BOARDS
+from voxrt.octree import BOARDS, Box, World
 from voxrt.octree.words import move_pointers
 
 pytestmark = needs_compiled_verilator
@@ -117,3 +123,29 @@ def test_whole_frames_from_power_on_and_after_an_upload(program, tmp_path):
         pixels = board.frames(6)[-1][0]
         assert np.array_equal(pixels, picture(replace(new, words=changed), camera, 1))
         assert not np.array_equal(pixels, expected)
+
+
+@pytest.mark.slow
+def test_blocks_that_edits_use_again_are_not_stale(program, tmp_path, monkeypatch):
+    """The driver edits a small world by the serial line: new blocks take the places of freed ones, which caches had."""
+    monkeypatch.setattr(serial_device, "_WAIT_SECONDS", 600.0)  # a simulated frame takes a second and more
+    scene = load_scene(EXAMPLES / "house.obj", 3)
+    camera = cameras_of(scene, 2)[0]
+    contents = {
+        "octree": encode_octree(scene.words, BOOT_BLOCK_BITS),
+        "table": boot_table(scene, cameras_of(scene, 2), Lighting(), scale=2, period=1, control=RUN),
+    }
+    with BoardSimulation(program, tmp_path, contents) as board:
+        board.frames(3)
+        device = SerialDevice(SerialLink("the simulation", SimulatedPort(board)), ModelDevice())
+        memory = SceneMemory(device, device.loaded())
+        world = World(rom_of(scene), undo_steps=0)
+        memory.begin_edits(world, scene)
+        rng = np.random.default_rng(3)
+        for _ in range(8):
+            low = rng.integers(0, 7, 3)
+            world.fill(Box(low, low + 2), int(rng.integers(0, 3)))
+            memory.show_edits(scene)
+            expected = picture(replace(scene, words=world.rom().octree.words), camera, 2)
+            assert np.array_equal(board.frames(3)[-1][0], expected)
+        assert Host(board).register("refused") == 0

@@ -240,6 +240,8 @@ def test_objects_keep_rules_of_their_own(tmp_path):
         ((2.5, 3.5, 4.5), (40.5, 50.5, 60.5)),
         ((2.25, 3, 4), (40.75, 50, 60)),
         ((-3000.5, -70000, 4.5), (40.5, 65000, 60.5)),
+        ((8, 16, 24), (32, 40, 48)),  # all faces between bricks of the native voxelizer
+        ((8.5, 16.5, 8), (32.25, 40, 16)),
     ],
 )
 def test_halves_of_a_box_count(low, high):

@@ -142,12 +142,26 @@ private:
                 add_volumes(pieces, surface[z], z);
             }
             if (pieces)
-                for (uint64_t left = summed; left != 0; left &= left - 1)
-                    below_[std::countr_zero(left)] += (*pieces)[kBrickVoxels + std::countr_zero(left)];
+                summed = carry_volumes(*pieces, summed, winding);
             claim_brick(tile, object, column, k, *brick, within, interior, result);
             ++k;
         }
         result.simple = result.simple && winding.simple();
+    }
+
+    /// Adds to `below_` what pieces of a brick add to the brick above. Returns the columns that are summed: those that
+    /// were, and those where a flat piece lies between the bricks, whose surface begins above.
+    uint64_t carry_volumes(const VolumePieces& pieces, uint64_t summed, const ColumnWinding& winding) {
+        for (int bit = 0; bit < 64; ++bit) {
+            const double carried = pieces[size_t(kBrickVoxels + bit)];
+            if (carried == 0)
+                continue;
+            if ((summed >> bit & 1) == 0)
+                below_[bit] = winding.at(bit);
+            below_[bit] += carried;
+            summed |= uint64_t{1} << bit;
+        }
+        return summed;
     }
 
     /// Finds the volumes of the voxels of a slice that have surface.
