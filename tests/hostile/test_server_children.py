@@ -15,7 +15,7 @@ from voxrt.serve.scene_process import ChildReader
 STAGE = rb'{"type": "Stage", "stage": "read", "done": 0, "total": 1}\n'
 SCENE = (
     rb'{"type": "Described", "name": "a", "depth": 1, "words": 1000000, "camera": null, "lighting": null,'
-    rb' "roots": [0], "period": null}\n'
+    rb' "roots": [0], "period": null, "warnings": [], "names": []}\n'
 )
 LATE = "takes more than 2 s to build"
 NONSENSE = "it sent what is no scene"

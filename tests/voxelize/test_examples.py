@@ -36,7 +36,13 @@ MODULES = sorted(
 
 @pytest.mark.parametrize("name", ["voxrt.voxelize", *MODULES])
 def test_the_examples_of_a_module_run(name):
-    result = doctest.testmod(importlib.import_module(name))
+    try:
+        module = importlib.import_module(name)
+    except ModuleNotFoundError as missing:
+        if missing.name != "bpy":
+            raise
+        pytest.skip("Blender's module bpy is not here: make blender-test")
+    result = doctest.testmod(module)
     assert result.failed == 0
 
 
