@@ -191,6 +191,9 @@ nb::object volumes_of_parts(const SceneParts& scene, int threads) {
     {
         const LongCall call;
         found = find_volumes(scene.depth, scene.parts, scene.objects, threads);
+        owners.reserve(found.voxels.size());
+        places.reserve(found.voxels.size());
+        volumes.reserve(found.voxels.size());
         for (const VoxelVolume& voxel : found.voxels) {
             owners.push_back(voxel.object);
             places.push_back({int32_t(gather_bits(voxel.code)), int32_t(gather_bits(voxel.code >> 1)),

@@ -402,15 +402,22 @@ ObjectVolumes BlockVoxelizer::volumes() {
             out.known[s.parts[p].object] = 0;
     }
     std::vector<ObjectTally> tallies(s.objects);
-    for (TileResult& tile : s.results(s.occupied({0, 0, s.side}), tallies, true))
-        out.voxels.insert(out.voxels.end(), tile.volumes.begin(), tile.volumes.end());
-    std::erase_if(out.voxels, [&](const VoxelVolume& v) { return !out.known[v.object]; });
-    std::stable_sort(out.voxels.begin(), out.voxels.end(),
-                     [](const VoxelVolume& a, const VoxelVolume& b) { return a.object < b.object; });
-    for (const ObjectTally& tally : tallies)
-        out.whole.push_back(tally.voxels);
-    for (const VoxelVolume& v : out.voxels)
-        --out.whole[v.object];
+    std::vector<TileResult> tiles = s.results(s.occupied({0, 0, s.side}), tallies, true);
+    std::vector<size_t> ends(s.objects + 1); // of the object before, then of each
+    for (const TileResult& tile : tiles)
+        for (const VoxelVolume& v : tile.volumes)
+            ends[v.object + 1] += out.known[v.object];
+    for (size_t object = 0; object < s.objects; ++object) {
+        out.whole.push_back(tallies[object].voxels - int64_t(ends[object + 1]));
+        ends[object + 1] += ends[object];
+    }
+    out.voxels.resize(ends.back());
+    for (TileResult& tile : tiles) {
+        for (const VoxelVolume& v : tile.volumes)
+            if (out.known[v.object])
+                out.voxels[ends[v.object]++] = v;
+        tile.volumes = {};
+    }
     return out;
 }
 
