@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from pxr import Tf, Usd, UsdGeom
 
+from voxrt.voxelize import arguments
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.usd.values import numbers
 
@@ -70,14 +71,17 @@ def up_axis(stage: Usd.Stage, log: WarningLog) -> str:
 
 
 def metres_per_unit(stage: Usd.Stage, path: Path) -> float:
-    """Return the root layer's unit in metres; raise AssetError where it is not a positive number."""
+    """Return the root layer's unit in metres; raise AssetError where it is no positive number, or out of range."""
     try:
         unit = float(UsdGeom.GetStageMetersPerUnit(stage))
     except Tf.ErrorException:  # some exporters store a float where USD wants a double
         unit = (numbers(stage.GetRootLayer().pseudoRoot.GetInfo("metersPerUnit"), 1) or (math.nan,))[0]
     if not (math.isfinite(unit) and unit > 0):
         raise AssetError(path, f"metersPerUnit {unit} is not a positive number", fix="set it to the metres per unit")
-    return unit
+    try:
+        return arguments.metres_per_unit("metersPerUnit", unit)
+    except ValueError as error:
+        raise AssetError(path, str(error), fix="set it to the metres per unit") from None
 
 
 def note_layers_that_disagree(stage: Usd.Stage, log: WarningLog) -> None:

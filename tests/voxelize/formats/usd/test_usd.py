@@ -323,7 +323,7 @@ def test_refused(usd, capfd, body, message):
     assert capfd.readouterr() == ("", "")
 
 
-@pytest.mark.parametrize("unit", ["0", "-1", "inf", "nan"])
+@pytest.mark.parametrize("unit", ["0", "-1", "inf", "nan", "2.7e-314", "1e300"])
 def test_a_unit_that_is_no_length(usd, unit):
     with pytest.raises(AssetError, match="metersPerUnit"):
         usd(mesh(), f"metersPerUnit = {unit}")
