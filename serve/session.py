@@ -13,9 +13,10 @@ from voxrt.board.errors import Refused
 from voxrt.board.view import frame_world
 from voxrt.serve.clients import Clients
 from voxrt.serve.control_transfer import ControlTransfer
-from voxrt.serve.edits import EditRate, SavedScene, check_operation, run_operation
+from voxrt.serve.edits import EditRate, check_operation, run_operation
 from voxrt.serve.packets import CHUNK_LIMIT, PROTOCOL_VERSION
 from voxrt.serve.renderer import DEFAULT_SIZE, Renderer
+from voxrt.serve.saved_scene import SavedScene
 from voxrt.serve.scene_load import SceneLoad
 from voxrt.serve.upload import UPLOAD_LIMIT, Upload, memory_bytes
 

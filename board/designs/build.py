@@ -102,7 +102,7 @@ def selftest_of(board: Mapping[str, Any]) -> dict[str, Any]:
         There is none for boards of this kind.
     """
     if top_of(board) not in SELFTESTS:
-        raise ValueError(f"there is no self-test for boards such as {board['title']}; there are those of ECP5 boards")
+        raise ValueError(f"{board['title']} has no self-test; only boards with an ECP5 have one")
     return {**board, "top": SELFTESTS[top_of(board)], "core": {}}
 
 
