@@ -1,4 +1,4 @@
-"""OFF, 3MF, COLLADA and STEP files, read by trimesh and by what it uses.
+"""OFF, 3MF and COLLADA files, read by trimesh and by what it uses.
 
 A file of 3MF or COLLADA says its unit and its up axis, and its colours are sRGB; trimesh hands on neither, nor the
 colours of 3MF: they are read here.
@@ -7,9 +7,6 @@ colours of 3MF: they are read here.
 from __future__ import annotations
 
 import io
-import subprocess
-import sys
-import tempfile
 import zipfile
 from dataclasses import dataclass, replace
 from importlib import import_module
@@ -21,8 +18,6 @@ import numpy as np
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.external_files import ExternalFiles, asset_name, read_asset
 from voxrt.voxelize.formats.image_file import INSTEAD, decode_image
-from voxrt.voxelize.formats.opacity import OPAQUE_FROM
-from voxrt.voxelize.formats.scene_frame import scene_transform
 from voxrt.voxelize.from_trimesh import trimesh_scene
 from voxrt.voxelize.warning_log import WarningLog
 
@@ -39,9 +34,6 @@ _UNITS = {"micron": 1e-6, "millimeter": 1e-3, "centimeter": 1e-2, "inch": 0.0254
 _UP_AXES: dict[str, UpAxis] = {"X_UP": "x", "Y_UP": "y", "Z_UP": "z"}
 _FREE_BYTES, _MOST_TIMES = 1 << 26, 64
 """What the parts of a 3MF file may unpack to: so many bytes, and so many times its size more."""
-
-_STEP_SECONDS = 600
-_CONVERT_STEP = "import sys, cascadio; sys.exit(cascadio.step_to_glb(sys.argv[1], sys.argv[2]) or 0)"
 
 
 def load_off(path: str | Path, *, up: UpAxis | None = None, unit: float | None = None) -> Scene:
@@ -121,34 +113,6 @@ class _Textures:
         if not data or decode_image(data, self.path, f"texture {name}", self.log) is None:
             raise KeyError(name)
         return data
-
-
-def load_step(path: str | Path, *, opaque_from: float = OPAQUE_FROM) -> Scene:
-    """Read a STEP file: its solids as triangles, by OpenCASCADE, in a process of its own.
-
-    AssetError where it cannot be read, or the extra ``cad`` is not installed.
-    """
-    from voxrt.voxelize.formats.gltf import load_gltf  # noqa: PLC0415 - most files need it not
-
-    path = Path(path)
-    _need(path, "cascadio")
-    read_asset(path)  # for its errors
-    with tempfile.TemporaryDirectory(prefix="voxrt-step-") as folder:
-        made = Path(folder, f"{asset_name(path)[:64] or 'part'}.glb")
-        command = [sys.executable, "-P", "-c", _CONVERT_STEP, str(path.resolve()), str(made)]
-        try:
-            done = subprocess.run(command, capture_output=True, timeout=_STEP_SECONDS, check=False)  # noqa: S603
-        except subprocess.TimeoutExpired:
-            raise AssetError(path, f"takes more than {_STEP_SECONDS} seconds to read", fix=_DAMAGED) from None
-        if done.returncode != 0 or not made.exists():
-            raise AssetError(path, "OpenCASCADE cannot read it", fix=_DAMAGED)
-        try:
-            scene = load_gltf(made, opaque_from=opaque_from)
-        except AssetError as error:
-            raise AssetError(path, error.problem, fix=_DAMAGED) from None
-    upright = scene_transform("z", None)  # which CAD programs mean: the format does not say
-    objects = tuple(replace(one, transform=upright @ one.transform) for one in scene.objects)
-    return replace(scene, name=asset_name(path), objects=objects)
 
 
 _DISTRIBUTIONS = {"collada": "pycollada"}  # of modules, where the name is another

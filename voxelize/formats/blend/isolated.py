@@ -6,7 +6,6 @@ program ``blender``, whose Python must be of this version to import voxrt.
 
 from __future__ import annotations
 
-import os
 import shutil
 import subprocess
 import sys
@@ -18,7 +17,7 @@ from typing import TYPE_CHECKING
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.opacity import OPAQUE_FROM
 from voxrt.voxelize.formats.reader_process.limits import Limits, Request
-from voxrt.voxelize.formats.reader_process.parent import Reader, read_apart
+from voxrt.voxelize.formats.reader_process.parent import Reader, read_apart, reader_module
 
 if TYPE_CHECKING:
     from voxrt.voxelize.scene import Scene
@@ -73,16 +72,7 @@ def read_isolated(
         own = Limits.of_this_machine()
         limits = replace(own, memory=min(own.memory + _BPY_MEMORY, own.most_memory))
     command, output = _command(path)
-    request = Request(
-        parent=os.getpid(),
-        output=output,
-        time=time,
-        allow_outside=allow_outside,
-        opaque_from=opaque_from,
-        memory=limits.memory,
-        most_memory=limits.most_memory,
-        seconds=limits.seconds,
-    )
+    request = Request(limits=limits, output=output, time=time, allow_outside=allow_outside, opaque_from=opaque_from)
     reader = Reader(
         "Blender",
         command,
@@ -90,14 +80,13 @@ def read_isolated(
         # The user's preferences, add-ons and startup file are not those of the file.
         folders=("TMPDIR", "BLENDER_USER_RESOURCES", "HOME"),
     )
-    return read_apart(reader, path, request, limits)
+    return read_apart(reader, path, request)
 
 
 def _command(path: Path) -> tuple[tuple[str, ...], int]:
     """Return the program that runs the child, and where that writes its message; AssetError without Blender."""
     if find_spec("bpy") is not None:
-        # -P: the folder that the user works in may hold a hostile numpy.py.
-        return (sys.executable, "-P", "-m", _CHILD), 1
+        return reader_module(_CHILD), 1
     program = shutil.which("blender")
     if program is None:
         raise AssetError(path, "Blender, which reads it, is not here", fix=_INSTALL)

@@ -12,6 +12,7 @@ waits for ever.
 
 from __future__ import annotations
 
+import os
 import resource
 import signal
 from dataclasses import dataclass
@@ -46,19 +47,12 @@ class Limits:
 class Request(msgspec.Struct, frozen=True, kw_only=True):
     """What any reader is asked: its limits, its caller's process id, and the options that all of them have."""
 
-    parent: int
+    limits: Limits
+    parent: int = msgspec.field(default_factory=os.getpid)
     output: int = 1  # the descriptor to which the reader writes its message
     time: float | None
     allow_outside: bool
     opaque_from: float
-    memory: int
-    most_memory: int
-    seconds: float
-
-    @property
-    def limits(self) -> Limits:
-        """The limits."""
-        return Limits(self.memory, self.most_memory, self.seconds)
 
 
 class Allowance:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import os
 import signal
 import subprocess
+import sys
 import tempfile
 from dataclasses import dataclass, field
 from typing import IO, TYPE_CHECKING
@@ -58,8 +59,15 @@ class Reader:
     removed: tuple[str, ...] = ()  # variables that it does not get
 
 
-def read_apart(reader: Reader, path: Path, request: Request, limits: Limits) -> Scene:
+def reader_module(name: str) -> tuple[str, ...]:
+    """Return the command of a reader that is a module of ours."""
+    # -P: the folder that the user works in may hold a hostile numpy.py.
+    return sys.executable, "-P", "-m", name
+
+
+def read_apart(reader: Reader, path: Path, request: Request) -> Scene:
     """Read a file in a process of its own. AssetError or DoesNotFitError where there is no scene."""
+    limits = request.limits
     _refuse_unopenable(reader, path)
     kept = {name: value for name, value in os.environ.items() if name not in reader.removed}
     # Libraries leave notes about their crashes in the temporary folder: it gets one that is removed.

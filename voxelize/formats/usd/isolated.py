@@ -5,13 +5,11 @@ usd-core is a large C++ library that trusts its files (``reader_process``); this
 
 from __future__ import annotations
 
-import os
-import sys
 from typing import TYPE_CHECKING
 
 from voxrt.voxelize.formats.opacity import OPAQUE_FROM
 from voxrt.voxelize.formats.reader_process.limits import Limits
-from voxrt.voxelize.formats.reader_process.parent import Reader, read_apart
+from voxrt.voxelize.formats.reader_process.parent import Reader, read_apart, reader_module
 from voxrt.voxelize.formats.usd.request import UsdRequest
 
 if TYPE_CHECKING:
@@ -67,23 +65,18 @@ def read_isolated(
     DoesNotFitError
         More than 255 materials or a million objects.
     """
-    limits = Limits.of_this_machine() if limits is None else limits
     request = UsdRequest(
-        parent=os.getpid(),
+        limits=limits or Limits.of_this_machine(),
         variants=tuple(variants),
         time=time,
         allow_outside=allow_outside,
         opaque_from=opaque_from,
-        memory=limits.memory,
-        most_memory=limits.most_memory,
-        seconds=limits.seconds,
     )
     reader = Reader(
         "usd-core",
-        # -P: the folder that the user works in may hold a hostile numpy.py.
-        (sys.executable, "-P", "-m", _CHILD),
+        reader_module(_CHILD),
         too_slow="repair it, or flatten it with usdcat",
         environment={"PXR_WORK_THREAD_LIMIT": "4"},
         removed=() if allow_outside else (_SEARCH_PATH,),
     )
-    return read_apart(reader, path, request, limits)
+    return read_apart(reader, path, request)

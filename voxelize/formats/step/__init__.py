@@ -1,0 +1,1 @@
+"""STEP files: their solids as triangles, by OpenCASCADE."""
