@@ -224,6 +224,26 @@ async def long_texts(target: Target) -> None:
                     await client.recv()
 
 
+async def edits(target: Target) -> None:
+    """Edit as fast as the server lets, also beyond all bounds, and go back by steps that there are not."""
+    far = [1e308, -1e308, 0]
+    # Small shapes: what undo keeps of large ones would hide a leak.
+    operations = [
+        {"op": "fill", "sphere": {"centre": [32, 32, 32], "radius": 24}, "material": 1},
+        {"op": "fill", "sphere": {"centre": far, "radius": 1e308}, "material": 0},
+        {"op": "fill", "capsule": {"start": far, "end": [0, 0, 0], "radius": 1}, "material": 1},
+        {"op": "paste", "box": {"low": [0, 0, 0], "high": [16, 16, 16]}, "at": [1, 0, 1], "turned": 3},
+        {"op": "set", "points": [[-1, 0, 1 << 40]], "materials": 1},
+        {"op": "set", "points": [[x, x, x] for x in range(64)] * 9, "materials": [x % 3 for x in range(576)]},
+        {"op": "material", "name": "\x1b[2J", "colour": "#000000"},
+        *({"op": one} for one in ("undo", "undo", "redo", "redo")),
+    ]
+    async with target.turn:
+        for operation in 20 * operations:
+            with contextlib.suppress(Refused):
+                await target.controller.edit(operation)
+
+
 ATTACKS: dict[str, Callable[[Target], Awaitable[None]]] = {
     "ten floods": ten_floods,
     "viewers that read nothing": read_nothing,
@@ -244,6 +264,7 @@ ATTACKS: dict[str, Callable[[Target], Awaitable[None]]] = {
     "memory by the square": memory_by_the_square,
     "headers that come twice": repeated_headers,
     "texts that are too long": long_texts,
+    "edits without end": edits,
 }
 
 

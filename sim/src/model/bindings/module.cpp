@@ -4,6 +4,7 @@
 #include "../rays/ray.h"
 #include "../views/fit_views.h"
 #include "../views/similarity.h"
+#include "owned_memory.h"
 #include "pick_bindings.h"
 #include "views_bindings.h"
 
@@ -37,7 +38,6 @@ using voxrt::python::to_numpy;
 
 namespace {
 
-using Words = nb::ndarray<const uint32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Palette = nb::ndarray<const uint8_t, nb::shape<256, 3>, nb::c_contig, nb::device::cpu>;
 using Registers = nb::ndarray<const int32_t, nb::shape<4, 3>, nb::c_contig, nb::device::cpu>;
 using Triples = nb::ndarray<const int32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
@@ -52,34 +52,6 @@ constexpr int32_t kSizeLimit = 1 << 14;
 constexpr int kThreadLimit = 1024;
 
 NamedTuple rendered_pixels, traced_rays;
-
-// A memory with words of its own, so that nobody changes them after they are verified. Memories of other roots share
-// them.
-class OwnedMemory {
-public:
-    OwnedMemory(const Words& words, int depth, std::size_t root)
-        : words_(std::make_shared<const std::vector<uint32_t>>(words.data(), words.data() + words.shape(0))),
-          verified_(verify(*words_, depth, root)) {}
-    OwnedMemory(const OwnedMemory& other, int depth, std::size_t root)
-        : words_(other.words_), verified_(verify(*words_, depth, root)) {}
-    OwnedMemory(const OwnedMemory&) = delete;
-    OwnedMemory& operator=(const OwnedMemory&) = delete;
-
-    const VerifiedMemory& verified() const { return verified_; }
-
-private:
-    static VerifiedMemory verify(const std::vector<uint32_t>& words, int depth, std::size_t root) {
-        if (root >= words.size() && !words.empty())
-            throw std::invalid_argument("there is no word " + std::to_string(root) + " in a memory of " +
-                                        std::to_string(words.size()));
-        const LongCall call;
-        const std::uint64_t word = root == 0 ? voxrt::octree::kWord0 : words[root];
-        return VerifiedMemory({words.data(), words.size(), depth < 0 ? 0 : static_cast<unsigned>(depth), word});
-    }
-
-    std::shared_ptr<const std::vector<uint32_t>> words_;
-    VerifiedMemory verified_;
-};
 
 // Ends frames for good, from any thread.
 class Stop {
