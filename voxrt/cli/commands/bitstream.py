@@ -43,11 +43,11 @@ def run(options: BitstreamCommand) -> None:
 def _make_selftest(options: BitstreamCommand) -> None:
     from voxrt.boards.bitstream import find_loader, load_bitstream, pack  # noqa: PLC0415 - NumPy comes with it
 
-    check_folder(options.output)
+    check_folder(options.output.parent if _names_file(options.output) else options.output)
     if options.load:
         find_loader()
     placed = _place(_find_board(options.board), options.seed, rebuild=options.rebuild, selftest=True)
-    file = options.output / f"{placed.name}-selftest.bit"
+    file = _bits_file(options.output, placed, f"{placed.name}-selftest")
     _write_bits(file, pack(placed, placed.config))
     result = selftest_result(placed, file)
     summarize(
@@ -67,7 +67,7 @@ def _make_scene(options: BitstreamCommand, source: Path) -> None:
     from voxrt.boards.board_scenes import board_scene  # noqa: PLC0415
     from voxrt.views.viewpoint import orbit  # noqa: PLC0415
 
-    check_folder(options.output)
+    check_folder(options.output.parent if _names_file(options.output) else options.output)
     if options.load:
         find_loader()
     placed = _place(_find_board(options.board), options.seed, rebuild=options.rebuild)
@@ -81,7 +81,8 @@ def _make_scene(options: BitstreamCommand, source: Path) -> None:
         count = partial(progress, "count cycles")
         beam = fit(blob.rom, orbit(blob.rom, size, roots=roots), lighting, design.tracer, progress=count)
     bits = make_bitstream(placed, board_scene(blob), orbit(blob.rom, beam.size, roots=roots), lighting, beam)
-    file, report = (options.output / f"{source.stem}{suffix}" for suffix in (placed.suffix, ".report.json"))
+    file = _bits_file(options.output, placed, source.stem)
+    report = file.with_suffix(".report.json")
     result = bitstream_result(blob.rom, placed, beam, file, budget)
     _write(file, bits, report, result)
     rows = summary_rows(result, report)
@@ -93,6 +94,19 @@ def _make_scene(options: BitstreamCommand, source: Path) -> None:
         summarize(f"{file.name}:", [("loaded", placed.title)])
     if options.reporting.json:
         print_json(result)
+
+
+def _names_file(output: Path) -> bool:
+    return output.suffix.lower() in {".bit", ".fs"} and not output.is_dir()
+
+
+def _bits_file(output: Path, placed: PlacedBoard, stem: str) -> Path:
+    """Return the file of the bitstream: `output`, or `stem` in that folder."""
+    if not _names_file(output):
+        return output / f"{stem}{placed.suffix}"
+    if output.suffix.lower() != placed.suffix:
+        raise UsageError(f"--output: the bitstream of {placed.name} is a {placed.suffix} file, not {output.name}")
+    return output
 
 
 def _find_board(name: str) -> str:
