@@ -166,12 +166,20 @@ comma := ,
 UNDEFINED := undefined,float-cast-overflow
 sanitized = $(CXX) -std=c++20 -O1 -g -Wall -Wextra -fno-sanitize-recover=all -fsanitize=$(subst undefined,$(UNDEFINED),$(subst -,$(comma),$*)) -I$(CURDIR)/build/sanitize/include
 HEADERS := $(wildcard voxelize/src/*/*.h octree/src/*/*.h sim/src/*/*/*.h)
+# Sources for certain instructions have their own flags, and stay away from other processors.
+AVX2 := -Wno-psabi -mavx2 -mfma
+AVX512 := -Wno-psabi -mavx512f -mavx512dq -mavx512vl
+OTHERS := $(if $(filter x86_64,$(shell uname -m)),,%_avx2.cpp %_avx512.cpp)
 # $(call sources,FOLDER): what a folder has besides its bindings for Python.
-sources = $(filter-out %/module.cpp %_bindings.cpp,$(wildcard $(1)/src/*/*.cpp))
-# $(call archive,FOLDER): the library of a folder's sources.
+sources = $(filter-out %/module.cpp %_bindings.cpp $(OTHERS),$(wildcard $(1)/src/*/*.cpp))
+# $(call compile,SOURCES,FLAGS)
+compile = $(if $(1),cd $(@:.a=) && $(sanitized) $(2) -c $(abspath $(1)))
+# $(call archive,SOURCES): their library.
 define archive
 @rm -rf $(@:.a=) && mkdir -p $(@:.a=)
-cd $(@:.a=) && $(sanitized) -c $(abspath $(call sources,$(1)))
+$(call compile,$(filter-out %_avx2.cpp %_avx512.cpp,$(1)),-Wno-psabi)
+$(call compile,$(filter %_avx2.cpp,$(1)),$(AVX2))
+$(call compile,$(filter %_avx512.cpp,$(1)),$(AVX512))
 $(AR) rcs $@ $(@:.a=)/*.o
 endef
 
@@ -184,25 +192,14 @@ build/sanitize/include/voxrt:
 	@ln -sfn $(CURDIR)/sim/src/bake $@/bake
 
 build/sanitize/%/libvoxelize.a: $(call sources,voxelize) $(HEADERS) | build/sanitize/include/voxrt
-	$(call archive,voxelize)
+	$(call archive,$(call sources,voxelize))
 
 build/sanitize/%/liboctree.a: $(call sources,octree) $(HEADERS) | build/sanitize/include/voxrt
-	$(call archive,octree)
+	$(call archive,$(call sources,octree))
 
-# Those of sim/src/model and sim/src/bake; some are for processors that have certain instructions.
-SIM := $(filter-out %/module.cpp %_bindings.cpp %_avx2.cpp %_avx512.cpp,$(wildcard sim/src/model/*/*.cpp sim/src/bake/*/*.cpp))
-ifeq ($(shell uname -m),x86_64)
-SIM_AVX2 := $(wildcard sim/src/model/*/*_avx2.cpp sim/src/bake/*/*_avx2.cpp)
-SIM_AVX512 := $(wildcard sim/src/model/*/*_avx512.cpp sim/src/bake/*/*_avx512.cpp)
-endif
-build/sanitize/%/libsim.a: $(SIM) $(SIM_AVX2) $(SIM_AVX512) $(HEADERS) | build/sanitize/include/voxrt
-	@rm -rf $(@:.a=) && mkdir -p $(@:.a=)
-	cd $(@:.a=) && $(sanitized) -Wno-psabi -c $(abspath $(SIM))
-ifneq ($(SIM_AVX2),)
-	cd $(@:.a=) && $(sanitized) -Wno-psabi -mavx2 -mfma -c $(abspath $(SIM_AVX2))
-	cd $(@:.a=) && $(sanitized) -Wno-psabi -mavx512f -mavx512dq -mavx512vl -c $(abspath $(SIM_AVX512))
-endif
-	$(AR) rcs $@ $(@:.a=)/*.o
+SIM := $(filter-out %/module.cpp %_bindings.cpp $(OTHERS),$(wildcard sim/src/model/*/*.cpp sim/src/bake/*/*.cpp))
+build/sanitize/%/libsim.a: $(SIM) $(HEADERS) | build/sanitize/include/voxrt
+	$(call archive,$(SIM))
 
 # $(call program,NAME,SOURCE,LIBRARIES): a program of these libraries.
 define program
@@ -227,6 +224,8 @@ fuzz: $(FUZZERS:%=build/fuzz/native/%-fuzzer)
 
 covered = $(CXX) -std=c++20 -O2 -g -fno-sanitize-recover=all -fsanitize=address,$(UNDEFINED) -I$(CURDIR)/build/sanitize/include
 COVERED := $(patsubst %.cpp,build/fuzz/native/objects/%.o,$(call sources,voxelize) $(call sources,octree))
+build/fuzz/native/objects/%_avx2.o: covered += $(AVX2)
+build/fuzz/native/objects/%_avx512.o: covered += $(AVX512)
 build/fuzz/native/objects/%.o: %.cpp $(HEADERS) | build/sanitize/include/voxrt
 	@mkdir -p $(@D)
 	$(covered) -fsanitize-coverage=trace-pc -c -o $@ $<

@@ -32,6 +32,7 @@ INSIDE_CLI = ("terminal", "results", "schemas", "inputs", "line", "commands", "r
 INSIDE_SOURCES = {
     "voxelize/src": (
         "work",
+        "vectors",
         "grid",
         "rules",
         "scene",

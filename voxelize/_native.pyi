@@ -5,6 +5,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+INSTRUCTION_SETS: tuple[str, ...]
 OBJECT_MODES: tuple[str, ...]
 
 Corner: TypeAlias = tuple[float, float, float]
@@ -64,7 +65,7 @@ class SceneParts:
         rules: NDArray[np.uint8],
     ) -> None: ...
 
-def voxelize(parts: SceneParts, fill: str, thin: str, threads: int) -> Voxelized: ...
+def voxelize(parts: SceneParts, fill: str, thin: str, threads: int, instructions: str = "") -> Voxelized: ...
 
 class VoxelVolumes(NamedTuple):
     objects: NDArray[np.uint32]
@@ -73,7 +74,7 @@ class VoxelVolumes(NamedTuple):
     whole: NDArray[np.int64]
     known: NDArray[np.uint8]
 
-def find_volumes(parts: SceneParts, threads: int) -> VoxelVolumes: ...
+def find_volumes(parts: SceneParts, threads: int, instructions: str = "") -> VoxelVolumes: ...
 
 class VoxelBlock(NamedTuple):
     brick_codes: NDArray[np.uint64]

@@ -8,12 +8,17 @@ from pathlib import Path
 
 import pytest
 
+from voxrt.voxelize import _native
+
 ROOT = Path(__file__).resolve().parents[2]
 
 
+AVX2 = pytest.param(["-mavx2"], marks=pytest.mark.skipif("avx2" not in _native.INSTRUCTION_SETS, reason="no AVX2"))
+
+
 @pytest.mark.skipif(not shutil.which("c++"), reason="no C++ compiler")
-@pytest.mark.parametrize("without", [[], ["-U__SSE2__"]], ids=["instructions", "plain"])
-def test_bytes_of_columns_are_the_voxels(tmp_path, without):
+@pytest.mark.parametrize("options", [[], AVX2, ["-U__SSE2__"]], ids=["instructions", "avx2", "plain"])
+def test_bytes_of_columns_are_the_voxels(tmp_path, options):
     (tmp_path / "voxrt").mkdir()
     (tmp_path / "voxrt" / "voxelize").symlink_to(ROOT / "voxelize" / "src")
     program = tmp_path / "bytes"
@@ -25,7 +30,7 @@ def test_bytes_of_columns_are_the_voxels(tmp_path, without):
         "-Wall",
         "-Wextra",
         "-Werror",
-        *without,
+        *options,
         "-I",
         tmp_path,
         source,

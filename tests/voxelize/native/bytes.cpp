@@ -1,5 +1,5 @@
 // Bytes of columns against loops over voxels: IntervalBytes, slices_of, morton_columns. Prints nothing where all agree.
-#include <voxrt/voxelize/coverage/covered_row.h>
+#include <voxrt/voxelize/coverage/covered_bytes.h>
 #include <voxrt/voxelize/grid/brick.h>
 
 #include <cstdio>
@@ -10,24 +10,29 @@ using namespace voxrt::voxelize;
 namespace {
 
 bool intervals_agree(std::mt19937& random) {
-    alignas(16) int32_t lo[8], hi[8];
+    alignas(32) int32_t lo[8], hi[8];
     const int base = 8 * static_cast<int>(random() % 8192);
     for (int i = 0; i < 8; ++i) {
-        lo[i] = std::max(0, base - 12 + static_cast<int>(random() % 30));
-        hi[i] = lo[i] + static_cast<int>(random() % (random() % 8 == 0 ? 65536 : 20)) - 2;
+        lo[i] = std::max(0, base - 12 + static_cast<int>(random() % 60));
+        hi[i] = lo[i] + static_cast<int>(random() % (random() % 8 == 0 ? 65536 : 40)) - 2;
         if (random() % 5 == 0) {
-            lo[i] = CoveredRow::kNowhere;
-            hi[i] = -1;
+            lo[i] = 1 << 30;
+            hi[i] = lo[i] - 1;
         }
     }
-    ColumnBytes inside = 0, begins = 0;
-    for (int i = 0; i < 8; ++i)
-        for (int z = 0; z < 8; ++z) {
-            inside |= ColumnBytes{lo[i] <= base + z && base + z <= hi[i]} << (8 * i + z);
-            begins |= ColumnBytes{lo[i] == base + z} << (8 * i + z);
-        }
-    const IntervalBytes all(lo, hi, base, true), some(lo, hi, base, false);
-    return all.inside == inside && all.begins == begins && some.inside == inside && some.begins == 0;
+    const IntervalBytes bytes(lo, hi, base);
+    for (int brick = 0; brick < IntervalBytes::kBricks; ++brick) {
+        ColumnBytes inside = 0, begins = 0;
+        for (int i = 0; i < 8; ++i)
+            for (int bit = 0; bit < 8; ++bit) {
+                const int z = base + 8 * brick + bit;
+                inside |= ColumnBytes{lo[i] <= z && z <= hi[i]} << (8 * i + bit);
+                begins |= ColumnBytes{lo[i] == z} << (8 * i + bit);
+            }
+        if (bytes.inside[brick] != inside || bytes.begins[brick] != begins)
+            return false;
+    }
+    return true;
 }
 
 bool slices_agree(std::mt19937_64& random) {

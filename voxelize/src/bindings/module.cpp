@@ -1,5 +1,6 @@
 // voxrt.voxelize._native: the voxelizer for Python. The docstrings are the manual; every array is checked here.
-#include "../coverage/slab_extent.h"
+#include "../coverage/vector_coverage.h"
+#include "../grid/brick.h"
 #include "../grid/morton.h"
 #include "../scene/convex_hull.h"
 #include "../tiles/voxelizer.h"
@@ -15,6 +16,7 @@
 
 namespace nb = nanobind;
 using namespace voxrt::voxelize;
+using voxrt::python::instruction_sets;
 using voxrt::python::LongCall;
 using voxrt::python::NamedTuple;
 using voxrt::python::rows_to_numpy;
@@ -172,17 +174,18 @@ nb::object voxelized_of(SparseVoxels& out) {
 
 void require_threads(int threads) { require(threads >= 0 && threads <= 1024, "threads must be 0 … 1024"); }
 
-nb::object voxelize_parts(const SceneParts& scene, const std::string& fill, const std::string& thin, int threads) {
+nb::object voxelize_parts(const SceneParts& scene, const std::string& fill, const std::string& thin, int threads,
+                          const std::string& instructions) {
     require_threads(threads);
     SparseVoxels out;
     {
         const LongCall call;
-        out = voxelize(scene.depth, scene.parts, scene.objects, fill_of(fill), threads, thin_of(thin));
+        out = voxelize(scene.depth, scene.parts, scene.objects, fill_of(fill), threads, thin_of(thin), instructions);
     }
     return voxelized_of(out);
 }
 
-nb::object volumes_of_parts(const SceneParts& scene, int threads) {
+nb::object volumes_of_parts(const SceneParts& scene, int threads, const std::string& instructions) {
     require_threads(threads);
     ObjectVolumes found;
     LargeVector<uint32_t> owners;
@@ -190,7 +193,7 @@ nb::object volumes_of_parts(const SceneParts& scene, int threads) {
     LargeVector<double> volumes;
     {
         const LongCall call;
-        found = find_volumes(scene.depth, scene.parts, scene.objects, threads);
+        found = find_volumes(scene.depth, scene.parts, scene.objects, threads, instructions);
         owners.reserve(found.voxels.size());
         places.reserve(found.voxels.size());
         volumes.reserve(found.voxels.size());
@@ -342,6 +345,8 @@ thin
     "keep" or "drop".
 threads
     0 takes as many as the machine has. The result does not depend on it.
+instructions
+    One of INSTRUCTION_SETS, or empty for the first. The result does not depend on it.
 
 Returns
 -------
@@ -385,6 +390,7 @@ NB_MODULE(_native, m) {
     for (const char* mode : kObjectModeNames)
         modes.append(mode);
     m.attr("OBJECT_MODES") = nb::tuple(modes);
+    m.attr("INSTRUCTION_SETS") = instruction_sets(coverage_engines());
     NamedTuple(m, "MeshArrays",
                {"positions", "triangles", "materials", "raster_sizes", "raster_coordinates", "raster_materials"},
                "A mesh as voxelize() takes it.");
@@ -414,8 +420,8 @@ NB_MODULE(_native, m) {
              nb::arg("depth"), nb::arg("meshes"), nb::arg("kinds"), nb::arg("mesh_of"), nb::arg("frames"),
              nb::arg("materials"), nb::arg("objects_of"), nb::arg("rules"));
     m.def("voxelize", &voxelize_parts, nb::arg("parts"), nb::arg("fill"), nb::arg("thin"), nb::arg("threads"),
-          kVoxelizeManual);
-    m.def("find_volumes", &volumes_of_parts, nb::arg("parts"), nb::arg("threads"),
+          nb::arg("instructions") = "", kVoxelizeManual);
+    m.def("find_volumes", &volumes_of_parts, nb::arg("parts"), nb::arg("threads"), nb::arg("instructions") = "",
           "Which part of each voxel with surface an object fills; the rules do not matter. By object: objects, voxels "
           "(x, y, z), volumes. Per object: voxels that are filled whole, and whether it has volumes.");
     nb::class_<PythonBlockVoxelizer>(m, "BlockVoxelizer", kBlockVoxelizerManual)

@@ -77,6 +77,14 @@ private:
     nb::handle type_;
 };
 
+/// The names of instruction sets (instruction_sets.h).
+template <class Engine> nb::tuple instruction_sets(const std::vector<Engine>& engines) {
+    nb::list names;
+    for (const Engine& engine : engines)
+        names.append(engine.instructions);
+    return nb::tuple(names);
+}
+
 /// Releases the GIL and lets Ctrl-C end the work, for its lifetime: the interrupt check raises what the signal handlers
 /// of Python raise.
 class LongCall {

@@ -4,8 +4,8 @@
 // is exact: one division per edge. Cost: about 10 cycles per plane.
 #pragma once
 
+#include "../grid/brick.h"
 #include "../grid/fixed_point.h"
-#include "covered_row.h"
 
 #include <algorithm>
 #include <climits>

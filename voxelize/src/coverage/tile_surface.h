@@ -8,7 +8,7 @@
 #pragma once
 
 #include "../grid/brick.h"
-#include "covered_row.h"
+#include "covered_bytes.h"
 #include "triangle_coverage.h"
 
 #include <vector>
@@ -81,28 +81,27 @@ public:
         }
     }
 
-    /// The same, and cross(), for a row of the tile: window and tile have the same lowest column.
-    void cover_row(const CoveredRow& row) {
-        const int v = row.y - y_;
-        for (int group = row.from >> kBrickBits; group <= row.to >> kBrickBits; ++group) {
-            const int32_t *lo = row.lo + group * kBrickSide, *hi = row.hi + group * kBrickSide;
-            int32_t lowest = lo[0], highest = hi[0];
-            for (int i = 1; i < kBrickSide; ++i) {
-                lowest = std::min(lowest, lo[i]);
-                highest = std::max(highest, hi[i]);
-            }
-            const int first = std::max(row.crossed_from - group * kBrickSide, 0);
-            const int last = std::min(row.crossed_to - group * kBrickSide, kBrickSide - 1);
-            const uint64_t crossed = first <= last ? ~uint64_t{0} << 8 * first & ~uint64_t{0} >> 8 * (7 - last) : 0;
-            for (int k = lowest >> kBrickBits; k <= highest >> kBrickBits; ++k) {
-                const IntervalBytes bytes(lo, hi, k * kBrickSide, crossed != 0);
-                if (bytes.inside == 0)
-                    continue;
-                ShellBrick& brick = at((v >> kBrickBits) * kTileBricks + group, k);
-                add_shell(brick, v & (kBrickSide - 1), bytes.inside);
-                if ((bytes.begins & crossed) != 0)
-                    add_crossings(brick, v & (kBrickSide - 1), bytes.begins & crossed, row.enters);
-            }
+    /// Receives that a triangle covers voxels of eight columns, and crosses the surface at some of them, one of a
+    /// column at most: of brick `k` in group `group` of row `y` of the tile.
+    [[gnu::always_inline]] void add_row(int group, int y, int k, ColumnBytes covered, ColumnBytes crossed,
+                                        bool enters) {
+        const int column = (y >> kBrickBits) * kTileBricks + group, row = y & (kBrickSide - 1);
+        const uint32_t index = table_.data()[size_t(column) * size_t(height_) + size_t(k)];
+        if (index == kNone) {
+            add_row_slowly(column, k, row, covered, crossed, enters);
+            return;
+        }
+        ShellBrick& brick = bricks_.data()[index];
+        uint64_t* const shell = brick.shell.data() + row;
+        uint64_t *const entered = brick.enters.data() + row, *const left = brick.leaves.data() + row;
+        if (brick.material != material_ || ((*entered | *left) & crossed) != 0) {
+            add_row_slowly(column, k, row, covered, crossed, enters);
+            return;
+        }
+        *shell |= covered;
+        if (crossed != 0) {
+            *(enters ? entered : left) |= crossed;
+            brick.crossed = true;
         }
     }
 
@@ -221,6 +220,9 @@ private:
         }
         brick.shell[row] |= voxels;
     }
+
+    /// What add_row does. In a file of its own: callers are compiled for instructions that the processor may lack.
+    void add_row_slowly(int column, int k, int row, ColumnBytes covered, ColumnBytes crossed, bool enters);
 
     /// The first triangle keeps a voxel: only newly covered ones take the second material of a brick.
     [[gnu::noinline]] void add_other_material(ShellBrick& brick, int row, ColumnBytes voxels) {

@@ -204,21 +204,6 @@ void cover_flat(const LocalTriangle<Wide>& t, const Window& w, bool inverted, Re
     }
 }
 
-/// Hands a row to a receiver; column by column where it takes no rows.
-template <class Receiver> void cover_row(const CoveredRow& row, const Window& w, Receiver& receiver) {
-    if constexpr (requires { receiver.cover_row(row); }) {
-        receiver.cover_row(row);
-    } else {
-        for (int i = row.from; i <= row.to; ++i) {
-            if (row.is_empty(i))
-                continue;
-            if (i >= row.crossed_from && i <= row.crossed_to)
-                receiver.cross(w.x0 + i, row.y, row.lo[i], row.enters);
-            receiver.cover(w.x0 + i, row.y, row.lo[i], row.hi[i]);
-        }
-    }
-}
-
 template <typename Wide, class Plane, bool Cross, class Receiver>
 void cover_local(const LocalTriangle<Wide>& t, const Window& w, Receiver& receiver) {
     const int x0 = std::max(w.x0 - t.bx, 0), x1 = std::min(w.x1 - t.bx, t.x1);
@@ -245,9 +230,6 @@ void cover_local(const LocalTriangle<Wide>& t, const Window& w, Receiver& receiv
         return;
     }
 
-    const int to_window = t.bx - w.x0;
-    CoveredRow row;
-    row.enters = enters;
     SlabExtent rows_x, rows_z, columns_z, ends;
     rows_x.clear(y1 - y0 + 1);
     rows_z.clear(y1 - y0 + 1);
@@ -284,26 +266,20 @@ void cover_local(const LocalTriangle<Wide>& t, const Window& w, Receiver& receiv
         if (!steep)
             plane.start(offset - (nx * (from + (nx > 0)) + ny * (y + (ny > 0))) * kUnit);
         const int row_lo = rows_z.lo[y - y0], row_hi = rows_z.hi[y - y0];
-        row.begin(y + t.by, from + to_window, to + to_window);
-        row.crossed_from = std::clamp(first, from, to + 1) + to_window;
-        row.crossed_to = std::clamp(end, from, to + 1) + to_window - 1;
         for (int x = from; x <= to; ++x) {
             int lo = std::max(row_lo, columns_z.lo[x - x0]), hi = std::min(row_hi, columns_z.hi[x - x0]);
             if (!steep) {
                 plane.clip(lo, hi);
                 plane.next();
             }
-            if (lo > hi || lo + t.bz > w.top) {
-                row.set_empty(x + to_window);
-            } else if (hi + t.bz < 0) {
-                row.set_empty(x + to_window);
-                if (Cross && x >= first && x < end)
-                    receiver.cross(x + t.bx, y + t.by, 0, enters);
-            } else {
-                row.set(x + to_window, std::max(lo + t.bz, 0), std::min(hi + t.bz, w.top));
-            }
+            if (lo > hi || lo + t.bz > w.top)
+                continue;
+            lo = std::max(lo + t.bz, 0);
+            if (Cross && x >= first && x < end)
+                receiver.cross(x + t.bx, y + t.by, lo, enters);
+            if (hi + t.bz >= 0)
+                receiver.cover(x + t.bx, y + t.by, lo, std::min(hi + t.bz, w.top));
         }
-        cover_row(row, w, receiver);
     }
 }
 
@@ -323,7 +299,6 @@ void cover(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w, b
 /// receiver.cover(x, y, lo, hi): voxels lo … hi of column (x, y) are covered.
 /// receiver.cross(x, y, z, enters): the ray of column (x, y) crosses the surface below the first voxel above z that the
 /// triangle does not cover; `enters` when the ray goes against the normal. Only where Cross.
-/// receiver.cover_row(row): both for a row of columns (covered_row.h); a receiver without it gets them one by one.
 /// receiver.side(): voxels per side of the grid.
 /// `inverted`: the surface's normals point into the solid.
 template <bool Cross, class Receiver>

@@ -17,6 +17,7 @@ using Slices = std::array<uint64_t, 8>;
 inline constexpr int kBrickBits = 3;
 inline constexpr int kBrickSide = 8;
 inline constexpr int kBrickVoxels = 512;
+inline constexpr int kTileSide = 64; // columns per side of a tile
 
 inline bool is_full(const Slices& s) { return (s[0] & s[1] & s[2] & s[3] & s[4] & s[5] & s[6] & s[7]) == ~uint64_t{0}; }
 inline bool is_empty(const Slices& s) { return (s[0] | s[1] | s[2] | s[3] | s[4] | s[5] | s[6] | s[7]) == 0; }

@@ -4,6 +4,7 @@
 #include "../coverage/centre_crossings.h"
 #include "../coverage/ellipsoid.h"
 #include "../coverage/material_raster.h"
+#include "../coverage/vector_coverage.h"
 #include "../coverage/volume_pieces.h"
 #include "convex_solids.h"
 #include "solid_fill.h"
@@ -61,8 +62,9 @@ private:
 
 class TileWorker {
 public:
-    TileWorker(const std::vector<PartView>& parts, const TriangleBins& bins, int side, Fill fill)
-        : parts_(parts), bins_(bins), side_(side), fill_(fill) {}
+    TileWorker(const std::vector<PartView>& parts, const TriangleBins& bins, int side, Fill fill,
+               const CoverageEngine& engine)
+        : parts_(parts), bins_(bins), side_(side), fill_(fill), cover_by_vectors_(engine.cover_by_vectors) {}
 
     /// `slot`: the place of `out` among the results of a block.
     void work(uint32_t index, uint32_t slot, Scratch& s, TileResult& out) const {
@@ -234,7 +236,10 @@ private:
                 }
             }
             if (part.material != 0 || !mesh.rasters.has_raster(t)) {
-                cover_with(surface);
+                if (fits_vectors(a, b, c))
+                    cover_by_vectors_(a, b, c, window, counts && Cross && !has_rule, surface);
+                else
+                    cover_with(surface);
             } else {
                 const TriangleRaster raster(a, reversed ? c : b, reversed ? b : c, mesh.rasters, t); // as authored
                 RasterSurface rastered(surface, raster);
@@ -267,6 +272,7 @@ private:
     const TriangleBins& bins_;
     int side_;
     Fill fill_;
+    CoverByVectors cover_by_vectors_;
 };
 
 } // namespace voxrt::voxelize

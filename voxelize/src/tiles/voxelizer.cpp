@@ -2,6 +2,7 @@
 
 #include "../rules/rule_voxels.h"
 #include "../rules/thin_parts.h"
+#include "../vectors/instruction_sets.h"
 #include "tile_worker.h"
 
 #include <optional>
@@ -155,13 +156,14 @@ void report_objects(const std::vector<PartView>& parts, Fill fill, const Triangl
 
 } // namespace
 
-SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads,
-                      Thin thin) {
+SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads, Thin thin,
+                      const std::string& instructions) {
     SparseVoxels all;
     all.depth = unsigned(depth);
     all.clear();
     SparseVoxels report = voxelize_in_blocks(
-        depth, parts, objects, fill, threads, 1 << depth, [&](SparseVoxels&& block) { all = std::move(block); }, thin);
+        depth, parts, objects, fill, threads, 1 << depth, [&](SparseVoxels&& block) { all = std::move(block); }, thin,
+        instructions);
     all.object_voxels = std::move(report.object_voxels);
     all.object_modes = std::move(report.object_modes);
     all.object_notes = std::move(report.object_notes);
@@ -170,8 +172,9 @@ SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t obje
 }
 
 SparseVoxels voxelize_in_blocks(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads,
-                                int block_side, const TakeBlock& take, Thin thin) {
+                                int block_side, const TakeBlock& take, Thin thin, const std::string& instructions) {
     BlockVoxelizer voxelizer(depth, parts, objects, fill, threads, thin);
+    voxelizer.use_instructions(instructions);
     const std::vector<ColumnBlock> blocks = voxelizer.blocks(block_side);
     std::vector<ObjectTally> tallies(objects);
     SparseVoxels report;
@@ -209,7 +212,7 @@ struct BlockVoxelizer::State {
                                     bool volumes = false) {
         lap();
         std::vector<TileResult> found(tiles.size());
-        const TileWorker worker(parts, bins, side, fill);
+        const TileWorker worker(parts, bins, side, fill, engine);
         workers.run(tiles.size(), [&](size_t job, int thread) {
             if (!scratch[size_t(thread)])
                 scratch[size_t(thread)] = std::make_unique<Scratch>(side, objects, parts.size(), has_rule);
@@ -301,6 +304,7 @@ struct BlockVoxelizer::State {
     Fill fill;
     Thin thin;
     bool has_rule = false; // some part has another rule than `touch`
+    CoverageEngine engine = coverage_engines().front();
     Workers workers;
     TriangleBins bins;
     std::vector<std::unique_ptr<Scratch>> scratch;
@@ -324,6 +328,10 @@ BlockVoxelizer::~BlockVoxelizer() = default;
 void BlockVoxelizer::use_threads(int threads) {
     state_->workers = Workers(threads);
     state_->scratch.resize(std::max(state_->scratch.size(), size_t(state_->workers.threads())));
+}
+
+void BlockVoxelizer::use_instructions(const std::string& instructions) {
+    state_->engine = engine_of(coverage_engines(), instructions);
 }
 
 std::vector<ColumnBlock> BlockVoxelizer::blocks(int block_side) const {
@@ -384,10 +392,12 @@ SparseVoxels BlockVoxelizer::report(const std::vector<ObjectTally>& tallies) con
     return out;
 }
 
-ObjectVolumes find_volumes(int depth, std::vector<PartView> parts, size_t objects, int threads) {
+ObjectVolumes find_volumes(int depth, std::vector<PartView> parts, size_t objects, int threads,
+                           const std::string& instructions) {
     for (PartView& part : parts)
         part.rule = Rule::half;
     BlockVoxelizer voxelizer(depth, parts, objects, Fill::solid, threads);
+    voxelizer.use_instructions(instructions);
     return voxelizer.volumes();
 }
 

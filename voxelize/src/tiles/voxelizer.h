@@ -39,6 +39,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace voxrt::voxelize {
@@ -46,11 +47,12 @@ namespace voxrt::voxelize {
 /// Voxelizes `parts`, ascending by object, on a grid of 2^depth voxels per side.
 ///
 /// `depth` is 1 … 16, `objects` is above the object of every part. `fill`: fill.h. `thin`: rule.h. `threads`: 0 takes
-/// as many as the machine has; the result does not depend on it. The arguments are not checked. Throws OutOfRange
-/// (parts.h), std::length_error where the tiles would list 2^32 triangles or more, and what the caller's interrupt
-/// check throws (interrupt.h).
+/// as many as the machine has; the result does not depend on it. `instructions`: one of the processor's instruction
+/// sets (vector_coverage.h), or empty for the fastest; all give the same voxels. The arguments are not checked. Throws
+/// OutOfRange (parts.h), std::length_error where the tiles would list 2^32 triangles or more, std::invalid_argument
+/// where the processor has no such instructions, and what the caller's interrupt check throws (interrupt.h).
 SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads,
-                      Thin thin = Thin::keep);
+                      Thin thin = Thin::keep, const std::string& instructions = {});
 
 /// Which part of each voxel with surface an object fills, whatever other objects there are.
 struct ObjectVolumes {
@@ -60,7 +62,8 @@ struct ObjectVolumes {
 };
 
 /// Finds the volumes of objects. Arguments and errors are those of voxelize(); the rules of parts do not matter.
-ObjectVolumes find_volumes(int depth, std::vector<PartView> parts, size_t objects, int threads);
+ObjectVolumes find_volumes(int depth, std::vector<PartView> parts, size_t objects, int threads,
+                           const std::string& instructions = {});
 
 /// Receives the voxels of a block, all that no other block has; its lists of objects are empty.
 using TakeBlock = std::function<void(SparseVoxels&&)>;
@@ -69,7 +72,8 @@ using TakeBlock = std::function<void(SparseVoxels&&)>;
 /// order. Only one block's voxels are in memory at a time. `take` is called for blocks with geometry; octree::Assembly
 /// joins their octrees. Returns what became of the objects, without voxels.
 SparseVoxels voxelize_in_blocks(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads,
-                                int block_side, const TakeBlock& take, Thin thin = Thin::keep);
+                                int block_side, const TakeBlock& take, Thin thin = Thin::keep,
+                                const std::string& instructions = {});
 
 /// A square of columns over the grid's whole height: its lowest column, and columns per side.
 struct ColumnBlock {
@@ -102,6 +106,9 @@ public:
 
     /// Sets the number of threads; 0 takes as many as the machine has.
     void use_threads(int threads);
+
+    /// Takes an instruction set, as voxelize() does.
+    void use_instructions(const std::string& instructions);
 
     /// The blocks with geometry, in Morton order. `block_side`: a multiple of 64.
     std::vector<ColumnBlock> blocks(int block_side) const;

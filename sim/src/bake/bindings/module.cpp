@@ -9,6 +9,7 @@
 
 #include <voxrt/octree/query/query.h>
 #include <voxrt/voxelize/bindings/python.h>
+#include <voxrt/voxelize/vectors/instruction_sets.h>
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
@@ -28,6 +29,7 @@ namespace nb = nanobind;
 using namespace nb::literals;
 using namespace voxrt::sim;
 using voxrt::octree::VerifiedMemory;
+using voxrt::python::instruction_sets;
 using voxrt::python::LongCall;
 using voxrt::python::NamedTuple;
 using voxrt::python::to_numpy;
@@ -215,13 +217,6 @@ nb::object bind_measure_light(const Vector<std::uint32_t>& words, int depth, con
                           to_numpy(std::move(light.sky), {found}), to_numpy(std::move(light.open_sky), {found}));
 }
 
-const LightEngine& engine_of(const std::string& instructions) {
-    for (const LightEngine& engine : light_engines())
-        if (instructions.empty() || instructions == engine.instructions)
-            return engine;
-    throw std::invalid_argument("this processor has no instruction set '" + instructions + "'");
-}
-
 Method method_of(const std::string& name) {
     if (name == "rays")
         return Method::rays;
@@ -248,7 +243,7 @@ nb::object bind_receive_light(const Vector<std::uint32_t>& words, int depth, con
             require(std::abs(std::int64_t{step[axis]}) < kParallelLimit, "a direction is not below 2**11");
         require(weights.data()[d] >= 0 && weights.data()[d] <= kWeightLimit, "a weight is not 0 ... 2**16");
     }
-    const LightEngine& engine = engine_of(instructions);
+    const LightEngine& engine = voxrt::voxelize::engine_of(light_engines(), instructions);
     auto received = std::make_unique<std::int64_t[]>(count), full = std::make_unique<std::int64_t[]>(count);
     {
         const LongCall call;
@@ -264,10 +259,7 @@ nb::object bind_receive_light(const Vector<std::uint32_t>& words, int depth, con
 } // namespace
 
 NB_MODULE(_bake, m) {
-    nb::list instruction_sets;
-    for (const LightEngine& engine : light_engines())
-        instruction_sets.append(engine.instructions);
-    m.attr("INSTRUCTION_SETS") = nb::tuple(instruction_sets);
+    m.attr("INSTRUCTION_SETS") = instruction_sets(light_engines());
     surface_type = NamedTuple(
         m, "Surface",
         {"brick_codes", "cells", "octant_codes", "octant_levels", "octant_materials", "voxels", "origins", "normals"},

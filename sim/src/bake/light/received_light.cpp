@@ -1,5 +1,6 @@
 #include "received_light.h"
 
+#include <voxrt/voxelize/vectors/instruction_sets.h>
 #include <voxrt/voxelize/work/interrupt.h>
 #include <voxrt/voxelize/work/workers.h>
 
@@ -121,10 +122,9 @@ const std::vector<LightEngine>& light_engines() {
     static const std::vector<LightEngine> engines = [] {
         std::vector<LightEngine> found;
 #if defined(__x86_64__)
-        if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-            __builtin_cpu_supports("avx512vl"))
+        if (voxelize::has_avx512())
             found.push_back({"avx512", open_rays_avx512, sweep_avx512});
-        if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+        if (voxelize::has_avx2())
             found.push_back({"avx2", open_rays_avx2, sweep_avx2});
 #endif
         found.push_back({"portable", open_rays_portable, sweep_portable});

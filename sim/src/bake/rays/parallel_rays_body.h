@@ -7,7 +7,7 @@
 // these bounds, and only nodes of kRaySize voxels per side and less ray by ray. Any hit ends a ray.
 #include "parallel_rays.h"
 
-#include <voxrt/sim/frames/lanes.h>
+#include <voxrt/voxelize/vectors/lanes.h>
 
 #include <algorithm>
 #include <bit>

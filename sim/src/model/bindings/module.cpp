@@ -9,6 +9,7 @@
 #include "views_bindings.h"
 
 #include <voxrt/voxelize/bindings/python.h>
+#include <voxrt/voxelize/vectors/instruction_sets.h>
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
@@ -32,6 +33,7 @@
 namespace nb = nanobind;
 using namespace voxrt::sim;
 using voxrt::octree::VerifiedMemory;
+using voxrt::python::instruction_sets;
 using voxrt::python::LongCall;
 using voxrt::python::NamedTuple;
 using voxrt::python::to_numpy;
@@ -137,11 +139,7 @@ nb::object render_frame(const OwnedMemory& memory, const Palette& materials, con
     if (width < 1 || height < 1 || width > kSizeLimit || height > kSizeLimit)
         throw std::invalid_argument("a frame of " + std::to_string(width) + "x" + std::to_string(height) +
                                     " pixels is not 1x1 ... 16384x16384");
-    const auto& engines = tile_engines();
-    auto engine = engines.begin();
-    while (!instructions.empty() && instructions != engine->instructions)
-        if (++engine == engines.end())
-            throw std::invalid_argument("this processor has no instruction set '" + instructions + "'");
+    const TileEngine& engine = voxrt::voxelize::engine_of(tile_engines(), instructions);
     Camera camera;
     for (int axis = 0; axis < 3; ++axis) {
         camera.position[axis] = registers(0, axis);
@@ -159,7 +157,7 @@ nb::object render_frame(const OwnedMemory& memory, const Palette& materials, con
         const FrameLimit limit(seconds, stop);
         voxrt::voxelize::WorkCounter::current().check(); // a small frame may end before its work calls it
         words_read = render(memory.verified(), shading, lod, camera,
-                            {width, height, colour.get(), material.get(), face.get()}, threads, engine->render_tile);
+                            {width, height, colour.get(), material.get(), face.get()}, threads, engine.render_tile);
     } catch (const FrameEnded& ended) {
         PyErr_SetString(ended.error, ended.problem.c_str());
         throw nb::python_error();
@@ -306,10 +304,7 @@ std::size_t chosen_fit(const std::vector<std::tuple<double, double, double>>& fi
 } // namespace
 
 NB_MODULE(_model, m) {
-    nb::list instruction_sets;
-    for (const TileEngine& engine : tile_engines())
-        instruction_sets.append(engine.instructions);
-    m.attr("INSTRUCTION_SETS") = nb::tuple(instruction_sets);
+    m.attr("INSTRUCTION_SETS") = instruction_sets(tile_engines());
     rendered_pixels =
         NamedTuple(m, "RenderedPixels", {"colour", "material", "face", "words_read"}, "What Memory.render() returns.");
     traced_rays =

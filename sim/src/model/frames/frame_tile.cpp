@@ -1,5 +1,7 @@
 #include "frame_tile.h"
 
+#include <voxrt/voxelize/vectors/instruction_sets.h>
+
 #include <algorithm>
 #include <cstdlib>
 
@@ -32,10 +34,9 @@ const std::vector<TileEngine>& tile_engines() {
     static const std::vector<TileEngine> engines = [] {
         std::vector<TileEngine> found;
 #if defined(__x86_64__)
-        if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-            __builtin_cpu_supports("avx512vl"))
+        if (voxelize::has_avx512())
             found.push_back({"avx512", render_tile_avx512});
-        if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+        if (voxelize::has_avx2())
             found.push_back({"avx2", render_tile_avx2});
 #endif
         found.push_back({"portable", render_tile_portable});

@@ -12,7 +12,7 @@
 #pragma once
 
 #include "frame_tile.h"
-#include "lanes.h"
+#include <voxrt/voxelize/vectors/lanes.h>
 
 #include <cstdint>
 

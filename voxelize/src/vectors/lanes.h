@@ -10,7 +10,7 @@
 #include <wasm_simd128.h>
 #endif
 
-namespace voxrt::sim {
+namespace voxrt {
 namespace { // internal: the same names are compiled for several instruction sets
 
 constexpr int kLanes = 8;
@@ -25,6 +25,7 @@ inline uint64_t bytes_of(Mask mask) {
 }
 
 // A register's worth of lanes, and what compilers have no operator for. choose() takes `yes` where the mask is set.
+// larger() and smaller() take b where a is not a number.
 #if defined(__AVX512F__)
 
 constexpr int kPartLanes = 8;
@@ -36,6 +37,7 @@ inline uint32_t equal(Part a, Part b) { return _mm512_cmp_pd_mask(a, b, _CMP_EQ_
 inline Part choose(uint32_t mask, Part yes, Part no) {
     return _mm512_mask_blend_pd(static_cast<__mmask8>(mask), no, yes);
 }
+inline Part if_less(Part a, Part b, Part yes, Part no) { return choose(less(a, b), yes, no); }
 
 #elif defined(__AVX2__)
 
@@ -53,6 +55,9 @@ inline Part choose(uint32_t mask, Part yes, Part no) {
     const __m256i bits = _mm256_setr_epi64x(1, 2, 4, 8);
     const __m256i set = _mm256_cmpeq_epi64(_mm256_and_si256(_mm256_set1_epi64x(mask), bits), bits);
     return _mm256_blendv_pd(no, yes, _mm256_castsi256_pd(set));
+}
+inline Part if_less(Part a, Part b, Part yes, Part no) {
+    return _mm256_blendv_pd(no, yes, _mm256_cmp_pd(a, b, _CMP_LT_OQ));
 }
 
 #else
@@ -85,6 +90,7 @@ inline Part choose(uint32_t mask, Part yes, Part no) {
     const PartTruth set{-static_cast<int64_t>(mask & 1), -static_cast<int64_t>(mask >> 1 & 1)};
     return set ? yes : no;
 }
+inline Part if_less(Part a, Part b, Part yes, Part no) { return a < b ? yes : no; }
 
 #endif
 
@@ -92,6 +98,19 @@ constexpr int kParts = kLanes / kPartLanes;
 
 struct Lanes {
     Part part[kParts];
+};
+
+inline Lanes load(const double* from) {
+    Lanes out;
+    std::memcpy(&out, from, sizeof out);
+    return out;
+}
+inline void store(double* to, const Lanes& a) { std::memcpy(to, &a, sizeof a); }
+
+// Eight integers.
+typedef int64_t LongPart __attribute__((vector_size(kPartLanes * sizeof(int64_t))));
+struct LongLanes {
+    LongPart part[kParts];
 };
 
 template <class Operation> inline Lanes each(const Operation& operation) {
@@ -108,16 +127,14 @@ template <class Relation> inline Mask joined(const Relation& relation) {
 }
 
 inline Lanes all(double x) {
-    return each([&](int) { return Part{} + x; });
+    return each([&](int) { return x - Part{}; });
 }
 // x, x + step, x + 2 step ...
 inline Lanes ramp(double x, double step) {
     alignas(64) double values[kLanes];
     for (int lane = 0; lane < kLanes; ++lane)
         values[lane] = x + step * lane;
-    Lanes out;
-    std::memcpy(&out, values, sizeof out);
-    return out;
+    return load(values);
 }
 inline Lanes operator+(const Lanes& a, const Lanes& b) {
     return each([&](int i) { return a.part[i] + b.part[i]; });
@@ -146,14 +163,24 @@ inline Mask equal(const Lanes& a, const Lanes& b) {
 inline Lanes choose(Mask mask, const Lanes& yes, const Lanes& no) {
     return each([&](int i) { return choose(mask >> i * kPartLanes, yes.part[i], no.part[i]); });
 }
+// `yes` where a < b.
+inline Lanes if_less(const Lanes& a, const Lanes& b, const Lanes& yes, const Lanes& no) {
+    return each([&](int i) { return if_less(a.part[i], b.part[i], yes.part[i], no.part[i]); });
+}
 // Rounds toward zero; values must fit.
 inline void store_as_int(int32_t* out, const Lanes& a) {
+#if defined(__AVX2__) && !defined(__AVX512F__)
+    // At once, so that a load of all lanes need not wait.
+    const __m256i rounded = _mm256_set_m128i(_mm256_cvttpd_epi32(a.part[1]), _mm256_cvttpd_epi32(a.part[0]));
+    std::memcpy(out, &rounded, sizeof rounded);
+#else
     typedef int32_t IntPart __attribute__((vector_size(kPartLanes * sizeof(int32_t))));
     for (int i = 0; i < kParts; ++i) {
         const IntPart rounded = __builtin_convertvector(a.part[i], IntPart);
         std::memcpy(out + i * kPartLanes, &rounded, sizeof rounded);
     }
+#endif
 }
 
 } // namespace
-} // namespace voxrt::sim
+} // namespace voxrt

@@ -1,0 +1,52 @@
+#include "vector_coverage.h"
+
+#include "../vectors/instruction_sets.h"
+
+#include <cmath>
+
+namespace voxrt::voxelize {
+
+namespace {
+
+constexpr int64_t kWideExtent = int64_t{1} << 24;
+
+/// Whether heights of the plane of a wide triangle are exact in doubles wherever the triangle's box is.
+bool is_flat_enough(const Vertex& a, const Vertex& b, const Vertex& c) {
+    const double x[2] = {double(b.x) - a.x, double(c.x) - a.x}, y[2] = {double(b.y) - a.y, double(c.y) - a.y},
+                 z[2] = {double(b.z) - a.z, double(c.z) - a.z};
+    const double nx = y[0] * z[1] - y[1] * z[0], ny = z[0] * x[1] - z[1] * x[0], nz = x[0] * y[1] - x[1] * y[0];
+    return nz == 0 || std::abs(nx) + std::abs(ny) < std::abs(nz) * 0x1p37;
+}
+
+} // namespace
+
+bool fits_vectors(const Vertex& a, const Vertex& b, const Vertex& c) {
+    const auto [low_x, high_x] = std::minmax({a.x, b.x, c.x});
+    const auto [low_y, high_y] = std::minmax({a.y, b.y, c.y});
+    const auto [low_z, high_z] = std::minmax({a.z, b.z, c.z});
+    const int64_t extent = std::max({int64_t{high_x} - low_x, int64_t{high_y} - low_y, int64_t{high_z} - low_z});
+    if (low_z < 0 || extent >= kWideExtent)
+        return false;
+    // The last voxel of each axis, from the first: -1 where the triangle is flat on a plane.
+    const int x = voxel_below(high_x) - voxel_floor(low_x), y = voxel_below(high_y) - voxel_floor(low_y),
+              z = voxel_below(high_z) - voxel_floor(low_z);
+    return x >= 0 && y >= 0 && z >= 0 && (x > 0) + (y > 0) + (z > 0) > 1 &&
+           (extent < kNarrowExtent || is_flat_enough(a, b, c));
+}
+
+const std::vector<CoverageEngine>& coverage_engines() {
+    static const std::vector<CoverageEngine> engines = [] {
+        std::vector<CoverageEngine> found;
+#if defined(__x86_64__)
+        if (has_avx512())
+            found.push_back({"avx512", cover_by_vectors_avx512});
+        if (has_avx2())
+            found.push_back({"avx2", cover_by_vectors_avx2});
+#endif
+        found.push_back({"portable", cover_by_vectors_portable});
+        return found;
+    }();
+    return engines;
+}
+
+} // namespace voxrt::voxelize

@@ -1,0 +1,2 @@
+#define VOXRT_COVER_BY_VECTORS cover_by_vectors_avx512
+#include "vector_coverage_body.h"

@@ -1,0 +1,405 @@
+// vector_coverage.h's cover_by_vectors for the instruction set of the including file, which defines
+// VOXRT_COVER_BY_VECTORS as its name.
+//
+// The tests are those of triangle_coverage.h. Coordinates are whole and below 2^25, so products of two are exact in
+// doubles, multiples of 1/4 too. A quotient is the nearest whole number to a product with a reciprocal: that product's
+// error is below 2^-39, and its distance from where the whole number changes is at least 2^-38. The plane is walked
+// with whole quotients and remainders, as PlaneWalk does it. Remainders of a narrow triangle are below 2^51, and held
+// in doubles; those of others are integers.
+//
+// Cost, in operations on eight doubles: 40 per edge and eight rows, 20 per edge and eight columns, 25 per row and eight
+// columns.
+#include "../vectors/lanes.h"
+#include "covered_bytes.h"
+#include "vector_coverage.h"
+
+namespace voxrt::voxelize {
+namespace {
+
+constexpr double kBeyond = 0x1p30; // voxels: beyond all, in either direction
+constexpr double kVoxel = kUnit;
+constexpr double kSample = (kUnit + 1) / 2.0; // of a column's ray in its voxel
+
+// A triangle: x and y from the window's lowest column, z from the triangle's lowest voxel, `bottom`.
+struct Corners {
+    double x[3], y[3], z[3];
+    int bottom;
+};
+
+// An edge, upwards along one axis.
+struct Edge {
+    int from, to; // corners
+    double begin, end, run, reciprocal;
+
+    Edge(const double* p, int corner) : from(corner), to(corner == 2 ? 0 : corner + 1) {
+        if (p[from] > p[to]) {
+            const int swapped = from;
+            from = to;
+            to = swapped;
+        }
+        begin = p[from];
+        end = p[to];
+        run = end - begin;
+        reciprocal = 1 / (run * kVoxel); // infinite where it passes no plane
+    }
+
+    // From its begin to planes or lines; not a number where it does not pass them.
+    Lanes to_planes(const Lanes& planes) const {
+        const Lanes none = all(__builtin_nan(""));
+        return if_less(all(begin), planes, if_less(planes, all(end), planes - all(begin), none), none);
+    }
+};
+
+inline Lanes nearest_whole(const Lanes& v) {
+    const Lanes large = all(0x1.8p52);
+    return v + large - large;
+}
+
+// Where an edge passes planes, along another axis q.
+class Passing {
+public:
+    Passing(const Edge& edge, const double* q)
+        : start_(q[edge.from] * edge.run - edge.run * (kVoxel / 2)), rise_(q[edge.to] - q[edge.from]), run_(edge.run),
+          reciprocal_(edge.reciprocal) {}
+
+    // `along`: from the edge's begin. The voxel that holds the point; where it lies between two, the upper and lower
+    // one.
+    Lanes upper(const Lanes& along) const { return at(along, 0.5); }
+    Lanes lower(const Lanes& along) const { return at(along, -0.5); }
+    // The first column whose ray lies beyond the point.
+    Lanes first_ray_beyond(const Lanes& along) const { return at(along, 0.25 + (kVoxel - kSample) * run_); }
+
+private:
+    Lanes at(const Lanes& along, double offset) const {
+        return nearest_whole((all(rise_) * along + all(start_ + offset)) * all(reciprocal_));
+    }
+    double start_, rise_, run_, reciprocal_;
+};
+
+// Intervals of eight slabs, or of eight planes between slabs.
+struct EightExtents {
+    Lanes lo = all(kBeyond), hi = all(-kBeyond);
+    // Nothing changes where an end is not a number.
+    void extend(const Lanes& low, const Lanes& high) {
+        lo = smaller(low, lo);
+        hi = larger(high, hi);
+    }
+};
+
+struct Extents {
+    alignas(64) double lo[kTileSide + 2 * kLanes], hi[kTileSide + 2 * kLanes];
+
+    void set(int place, const EightExtents& extents) {
+        store(lo + place, extents.lo);
+        store(hi + place, extents.hi);
+    }
+    EightExtents at(int place) const { return {load(lo + place), load(hi + place)}; }
+
+    // From planes to the slabs between them.
+    void join(int slabs) {
+        for (int i = 0; i < slabs; i += kLanes) {
+            EightExtents joined = at(i), above = at(i + 1);
+            joined.extend(above.lo, above.hi);
+            set(i, joined);
+        }
+    }
+    // Adds a corner (p, q) to the slabs that contain it, two where it lies between them.
+    void extend(int first, int slabs, double p, double q) {
+        const auto along = static_cast<int64_t>(p), across = static_cast<int64_t>(q);
+        const double low = voxel_floor(across), high = voxel_below(across);
+        for (int slab = voxel_below(along) - first; slab <= voxel_floor(along) - first; ++slab)
+            if (slab >= 0 && slab < slabs) {
+                lo[slab] = low < lo[slab] ? low : lo[slab];
+                hi[slab] = high > hi[slab] ? high : hi[slab];
+            }
+    }
+};
+
+// The rows of a triangle in a window: which columns it may cover, and whose rays it crosses; where it is along z.
+struct Rows {
+    Extents z;
+    alignas(32) int32_t from[kTileSide + kLanes], to[kTileSide + kLanes]; // columns
+    alignas(32) int32_t crossed_from[kTileSide + kLanes], crossed_to[kTileSide + kLanes];
+
+    // Rows y0 ... y0 + count - 1, columns x0 ... x1; voxels up to `top`.
+    Rows(const Corners& t, int y0, int count, int x0, int x1, double top, bool crosses) {
+        const Edge edges[3] = {{t.y, 0}, {t.y, 1}, {t.y, 2}};
+        Extents x, ends;
+        for (int base = 0; base <= count; base += kLanes) {
+            const Lanes planes = ramp((y0 + base) * kVoxel, kVoxel), rays = planes + all(kSample);
+            EightExtents eight_x, eight_z, eight_ends;
+            for (const Edge& edge : edges) {
+                const Lanes along = edge.to_planes(planes);
+                const Passing across(edge, t.x), upwards(edge, t.z);
+                eight_x.extend(across.upper(along), across.lower(along));
+                eight_z.extend(upwards.upper(along), upwards.lower(along));
+                if (crosses) {
+                    const Lanes beyond = across.first_ray_beyond(edge.to_planes(rays));
+                    eight_ends.extend(beyond, beyond);
+                }
+            }
+            x.set(base, eight_x);
+            z.set(base, eight_z);
+            ends.set(base, eight_ends);
+        }
+        x.join(count);
+        z.join(count);
+        for (int i = 0; i < 3; ++i) {
+            x.extend(y0, count, t.y[i], t.x[i]);
+            z.extend(y0, count, t.y[i], t.z[i]);
+        }
+        const Lanes bottom = all(t.bottom), one = all(1);
+        for (int base = 0; base < count; base += kLanes) {
+            const EightExtents eight_x = x.at(base), eight_z = z.at(base), eight_ends = ends.at(base);
+            const Lanes first = larger(eight_x.lo, all(x0)), last = smaller(eight_x.hi, all(x1));
+            store_as_int(from + base, first);
+            store_as_int(to + base, last);
+            store_as_int(crossed_from + base, larger(eight_ends.lo, first));
+            store_as_int(crossed_to + base, smaller(eight_ends.hi - one, last));
+            z.set(base, {eight_z.lo + bottom, smaller(eight_z.hi + bottom, all(top))});
+        }
+    }
+};
+
+// Where the columns from x0 on are along z.
+inline void find_columns(const Corners& t, int x0, int count, Extents& z) {
+    const Edge edges[3] = {{t.x, 0}, {t.x, 1}, {t.x, 2}};
+    for (int base = 0; base <= count; base += kLanes) {
+        const Lanes planes = ramp((x0 + base) * kVoxel, kVoxel);
+        EightExtents eight;
+        for (const Edge& edge : edges) {
+            const Lanes along = edge.to_planes(planes);
+            const Passing upwards(edge, t.z);
+            eight.extend(upwards.upper(along), upwards.lower(along));
+        }
+        z.set(base, eight);
+    }
+    z.join(count);
+    for (int i = 0; i < 3; ++i)
+        z.extend(x0, count, t.x[i], t.z[i]);
+    const Lanes bottom = all(t.bottom);
+    for (int base = 0; base < count; base += kLanes) {
+        const EightExtents eight = z.at(base);
+        z.set(base, {eight.lo + bottom, eight.hi + bottom});
+    }
+}
+
+// Remainders: Lanes for narrow triangles, LongLanes for others.
+inline void set_all(Lanes& lanes, int64_t v) { lanes = all(static_cast<double>(v)); }
+inline Lanes one_unless_less(const Lanes& a, const Lanes& b) { return if_less(a, b, all(0), all(1)); }
+inline Lanes less_if_reached(const Lanes& rest, const Lanes& limit) {
+    return rest - if_less(rest, limit, all(0), limit);
+}
+inline Lanes chosen(Mask lanes, const Lanes& v) { return choose(lanes, v, all(0)); }
+
+template <class Operation> inline LongLanes each_long(const Operation& operation) {
+    LongLanes out;
+    for (int i = 0; i < kParts; ++i)
+        out.part[i] = operation(i);
+    return out;
+}
+inline LongLanes operator+(const LongLanes& a, const LongLanes& b) {
+    return each_long([&](int i) { return a.part[i] + b.part[i]; });
+}
+inline LongLanes operator-(const LongLanes& a, const LongLanes& b) {
+    return each_long([&](int i) { return a.part[i] - b.part[i]; });
+}
+inline void set_all(LongLanes& lanes, int64_t v) {
+    lanes = each_long([&](int) { return v - LongPart{}; });
+}
+inline Lanes one_unless_less(const LongLanes& a, const LongLanes& b) {
+    return each(
+        [&](int i) { return reinterpret_cast<Part>((a.part[i] >= b.part[i]) & reinterpret_cast<LongPart>(1 - Part{})); });
+}
+inline LongLanes less_if_reached(const LongLanes& rest, const LongLanes& limit) {
+    return each_long([&](int i) { return rest.part[i] - ((rest.part[i] >= limit.part[i]) & limit.part[i]); });
+}
+inline LongLanes chosen(Mask lanes, const LongLanes& v) {
+    return each_long([&](int i) {
+        LongPart found = v.part[i];
+        for (int lane = 0; lane < kPartLanes; ++lane)
+            found[lane] = lanes >> (i * kPartLanes + lane) & 1 ? found[lane] : 0;
+        return found;
+    });
+}
+
+// A quotient of whole numbers: its whole part, and the rest of the numerator.
+template <class Rest> struct Quotients {
+    Lanes whole;
+    Rest rest;
+
+    Quotients() = default;
+    Quotients(const Lanes& whole, const Rest& rest) : whole(whole), rest(rest) {}
+    template <class Wide> Quotients(Wide numerator, Wide denominator) {
+        const Wide quotient = floor_div<Wide>(numerator, denominator);
+        whole = all(static_cast<double>(static_cast<int64_t>(quotient)));
+        set_all(rest, static_cast<int64_t>(numerator - quotient * denominator));
+    }
+    void add(const Quotients& other, const Rest& denominator) {
+        rest = rest + other.rest;
+        whole = whole + other.whole + one_unless_less(rest, denominator);
+        rest = less_if_reached(rest, denominator);
+    }
+};
+
+// The voxels that a triangle's plane passes, eight columns at a time, row by row.
+template <class Wide, class Rest> class PlaneRows {
+public:
+    // Begins at column x of row y.
+    PlaneRows(const Corners& t, int x, int y) {
+        int64_t edge[2][3];
+        for (int i = 0; i < 2; ++i) {
+            edge[i][0] = static_cast<int64_t>(t.x[i + 1] - t.x[0]);
+            edge[i][1] = static_cast<int64_t>(t.y[i + 1] - t.y[0]);
+            edge[i][2] = static_cast<int64_t>(t.z[i + 1] - t.z[0]);
+        }
+        auto product = [&](int u, int v) { return edge[0][u] * edge[1][v] - edge[0][v] * edge[1][u]; };
+        int64_t nx = product(1, 2), ny = product(2, 0), nz = product(0, 1);
+        enters_ = nz < 0;
+        if (nz == 0) { // it passes all voxels of the columns that the rows and columns leave
+            set_all(unit_, 1);
+            set_all(carry_, 1);
+            height_ = all(4 * kBeyond);
+            row_ = Quotients<Rest>(Wide{0}, Wide{1});
+            next_row_ = next_group_ = row_;
+            row_.whole = all(-2 * kBeyond);
+            return;
+        }
+        if (enters_) {
+            nx = -nx;
+            ny = -ny;
+            nz = -nz;
+        }
+        const Wide unit = nz * kUnit;
+        set_all(unit_, static_cast<int64_t>(unit));
+        const Quotients<Rest> height(static_cast<Wide>((nx < 0 ? -nx : nx) + (ny < 0 ? -ny : ny)) * kUnit - 1, unit);
+        height_ = height.whole;
+        carry_ = unit_ - height.rest;
+        auto corner = [&](int64_t n, double at) { return static_cast<Wide>(n) * static_cast<int64_t>(at); };
+        row_ = Quotients<Rest>(corner(nx, t.x[0]) + corner(ny, t.y[0]) + corner(nz, t.z[0]) -
+                                   corner(nx, (x + (nx > 0)) * kVoxel) - corner(ny, (y + (ny > 0)) * kVoxel),
+                               unit);
+        row_.whole = row_.whole + all(t.bottom);
+        next_row_ = Quotients<Rest>(corner(-ny, kVoxel), unit);
+        Quotients<Rest> columns(corner(-nx, kVoxel), unit); // 1, 2, 4 and at last 8
+        for (const Mask lanes : {0xAA, 0xCC, 0xF0}) {
+            row_.add({chosen(lanes, columns.whole), chosen(lanes, columns.rest)}, unit_);
+            columns.add(columns, unit_);
+        }
+        next_group_ = columns;
+    }
+
+    // Whether rays upwards enter the solid.
+    bool enters() const { return enters_; }
+
+    void begin_row() { group_ = row_; }
+    void end_row() { row_.add(next_row_, unit_); }
+    void end_group() { group_.add(next_group_, unit_); }
+
+    // Narrows the voxels of a group's columns.
+    void narrow(EightExtents& z) const {
+        z.lo = larger(group_.whole, z.lo);
+        z.hi = smaller(group_.whole + height_ + one_unless_less(group_.rest, carry_), z.hi);
+    }
+
+private:
+    bool enters_;
+    Rest unit_, carry_; // carry_: which rest makes one more than height_
+    Lanes height_;      // (spread - 1) / unit
+    Quotients<Rest> row_, next_row_, group_, next_group_;
+};
+
+// Bits first ... last, which are 0 ... 63 or none.
+inline uint64_t bits_between(int first, int last) {
+    return first > last ? 0 : ~uint64_t{0} << first & ~uint64_t{0} >> (63 - last);
+}
+
+// By mask: its bits, each as a whole byte.
+constexpr auto kWholeBytes = [] {
+    std::array<ColumnBytes, 256> bytes{};
+    for (unsigned mask = 0; mask < 256; ++mask)
+        for (int i = 0; i < 8; ++i)
+            bytes[mask] |= static_cast<ColumnBytes>(mask >> i & 1 ? 0xFF : 0) << 8 * i;
+    return bytes;
+}();
+
+// A part of a window: columns x0 ... x1, rows y0 ... y1 and voxels up to `top`.
+struct Area {
+    int x0, x1, y0, y1, top;
+};
+
+template <class Wide, class Rest>
+inline void cover_area(const Corners& t, const Area& area, bool crosses, TileSurface& surface) {
+    const auto [x0, x1, y0, y1, top] = area;
+    const int first_group = x0 / kLanes, first_column = first_group * kLanes;
+    const Rows rows(t, y0, y1 - y0 + 1, x0, x1, top, crosses);
+    Extents columns;
+    find_columns(t, first_column, x1 - first_column + 1, columns);
+    PlaneRows<Wide, Rest> plane(t, first_column, y0);
+    for (int y = y0; y <= y1; ++y, plane.end_row()) {
+        const int row = y - y0, from = rows.from[row], to = rows.to[row];
+        const double row_lo = rows.z.lo[row], row_hi = rows.z.hi[row];
+        if (from > to || row_lo > row_hi)
+            continue;
+        const int first_brick = static_cast<int>(row_lo) >> kBrickBits,
+                  last_brick = static_cast<int>(row_hi) >> kBrickBits;
+        const uint64_t covered = bits_between(from, to);
+        const uint64_t crossed = bits_between(rows.crossed_from[row], rows.crossed_to[row]);
+        plane.begin_row();
+        for (int group = first_group; group <= to / kLanes; ++group, plane.end_group()) {
+            const ColumnBytes inside = kWholeBytes[covered >> group * kLanes & 0xFF];
+            if (inside == 0)
+                continue;
+            const ColumnBytes crossing = kWholeBytes[crossed >> group * kLanes & 0xFF];
+            EightExtents z = columns.at((group - first_group) * kLanes);
+            z.lo = larger(z.lo, all(row_lo));
+            z.hi = smaller(z.hi, all(row_hi));
+            plane.narrow(z);
+            z.lo = smaller(z.lo, all(kBeyond)); // all fit 32 bits
+            alignas(32) int32_t lo[kLanes], hi[kLanes];
+            store_as_int(lo, z.lo);
+            store_as_int(hi, larger(z.hi, z.lo - all(1)));
+            for (int brick = first_brick; brick <= last_brick; brick += IntervalBytes::kBricks) {
+                const IntervalBytes bytes(lo, hi, brick * kBrickSide);
+                for (int i = 0; i < IntervalBytes::kBricks && brick + i <= last_brick; ++i)
+                    if ((bytes.inside[i] & inside) != 0)
+                        surface.add_row(group, y, brick + i, bytes.inside[i] & inside, bytes.begins[i] & crossing,
+                                        plane.enters());
+            }
+        }
+    }
+}
+
+} // namespace
+
+void VOXRT_COVER_BY_VECTORS(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w, bool crosses,
+                            TileSurface& surface) {
+    auto least = [](int32_t u, int32_t v, int32_t s) { return u < v ? (u < s ? u : s) : (v < s ? v : s); };
+    auto most = [](int32_t u, int32_t v, int32_t s) { return u > v ? (u > s ? u : s) : (v > s ? v : s); };
+    const int left = voxel_floor(least(a.x, b.x, c.x)) - w.x0, front = voxel_floor(least(a.y, b.y, c.y)) - w.y0;
+    const int right = voxel_below(most(a.x, b.x, c.x)) - w.x0, back = voxel_below(most(a.y, b.y, c.y)) - w.y0;
+    const int x0 = left > 0 ? left : 0, x1 = right < w.x1 - w.x0 ? right : w.x1 - w.x0;
+    const int y0 = front > 0 ? front : 0, y1 = back < w.y1 - w.y0 ? back : w.y1 - w.y0;
+    Corners t;
+    t.bottom = voxel_floor(least(a.z, b.z, c.z));
+    if (x0 > x1 || y0 > y1 || t.bottom > w.top)
+        return;
+    const Vertex* corners[3] = {&a, &b, &c};
+    for (int i = 0; i < 3; ++i) {
+        t.x[i] = static_cast<double>(corners[i]->x - w.x0 * kUnit);
+        t.y[i] = static_cast<double>(corners[i]->y - w.y0 * kUnit);
+        t.z[i] = static_cast<double>(corners[i]->z - t.bottom * kUnit);
+    }
+    const auto width = [](const double (&p)[3]) {
+        const double low = p[0] < p[1] ? (p[0] < p[2] ? p[0] : p[2]) : (p[1] < p[2] ? p[1] : p[2]);
+        const double high = p[0] > p[1] ? (p[0] > p[2] ? p[0] : p[2]) : (p[1] > p[2] ? p[1] : p[2]);
+        return high - low;
+    };
+    const Area area{x0, x1, y0, y1, w.top};
+    if (width(t.x) < kNarrowExtent && width(t.y) < kNarrowExtent && width(t.z) < kNarrowExtent)
+        cover_area<int64_t, Lanes>(t, area, crosses, surface);
+    else
+        cover_area<int128, LongLanes>(t, area, crosses, surface);
+}
+
+} // namespace voxrt::voxelize
