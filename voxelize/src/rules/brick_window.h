@@ -5,34 +5,35 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 
 namespace voxrt::voxelize {
 
-/// 16 voxels per side, of which `margin` at each side of the brick are its neighbours', and the rest is empty. Voxel
-/// (x, y, z) of the brick is bit x + 4 of row (y, z).
+/// 16 voxels per side: the brick, `margin` voxels of its neighbours at each side, and beyond these at most more of
+/// them. Voxel (x, y, z) of the brick is bit x + 4 of row (y, z).
 template <int margin> class BrickWindow {
 public:
     static_assert(margin >= 1 && margin <= 3);
     static constexpr int kFirst = 4; // the bit of x = 0
 
-    uint16_t& row(int y, int z) { return rows_[size_t(kPlane + (z + kFirst) * kPlane + y + kFirst)]; }
-    uint16_t row(int y, int z) const { return rows_[size_t(kPlane + (z + kFirst) * kPlane + y + kFirst)]; }
+    uint16_t& row(int y, int z) { return rows_[size_t((z + kFirst) * kPlane + y + kFirst)]; }
+    uint16_t row(int y, int z) const { return rows_[size_t((z + kFirst) * kPlane + y + kFirst)]; }
 
     /// The 3 x 3 x 3 bricks around: `bricks[i]`, i = x + 3 y + 9 z, each 0 … 2.
     void gather(const std::array<const Slices*, 27>& bricks) {
-        for (int z = -margin; z < kBrickSide + margin; ++z)
+        for (int z = -margin; z < kBrickSide + margin; ++z) {
+            const Slices* const* plane = &bricks[size_t(z < 0 ? 0 : z < kBrickSide ? 9 : 18)];
+            Eight parts[3];
             for (int part = 0; part < 3; ++part) {
-                const Slices* const* line = &bricks[size_t(9 * place(z) + 3 * part)];
-                const uint64_t slices[3] = {(*line[0])[z & 7], (*line[1])[z & 7], (*line[2])[z & 7]};
-                const int first = part == 0 ? -margin : part == 1 ? 0 : kBrickSide;
-                const int end = part == 0 ? 0 : part == 1 ? kBrickSide : kBrickSide + margin;
-                for (int y = first; y < end; ++y) {
-                    const int shift = kBrickSide * (y & 7);
-                    row(y, z) = uint16_t((slices[0] >> shift & 0xFF) >> (kBrickSide - margin) << (kFirst - margin) |
-                                         (slices[1] >> shift & 0xFF) << kFirst |
-                                         (slices[2] >> shift & ((1u << margin) - 1)) << (kFirst + kBrickSide));
-                }
+                auto of = [&](int x) { return eight_of((*plane[3 * part + x])[size_t(z & 7)]); };
+                parts[part] = of(0) >> (kBrickSide - margin) << (kFirst - margin) | of(1) << kFirst |
+                              (of(2) & ((1 << margin) - 1)) << (kFirst + kBrickSide);
             }
+            uint16_t* const to = &row(0, z);
+            std::memcpy(to - kFirst, reinterpret_cast<const uint16_t*>(&parts[0]) + kFirst, kFirst * sizeof *to);
+            std::memcpy(to, &parts[1], sizeof parts[1]);
+            std::memcpy(to + kBrickSide, &parts[2], kFirst * sizeof *to);
+        }
     }
 
     /// The brick without its margin.
@@ -46,37 +47,50 @@ public:
 
     /// Adds the 26 neighbours of each voxel.
     void dilate() {
-        for (uint16_t& r : rows_)
-            r = uint16_t(r | r << 1 | r >> 1);
-        for (const int step : {1, kPlane})
-            each([step](const uint16_t* r) { return uint16_t(r[0] | r[step] | r[-step]); });
+        each([](const uint16_t* r) { return at(r) | at(r) << 1 | at(r) >> 1; });
+        each([](const uint16_t* r) { return at(r) | at(r + 1) | at(r - 1); });
+        each([](const uint16_t* r) { return at(r) | at(r + kPlane) | at(r - kPlane); });
     }
 
     /// Leaves the voxels that a cube of 2 x 2 x 2 voxels of the set holds.
     void open() {
-        for (uint16_t& r : rows_)
-            r = uint16_t(r & r >> 1);
-        for (const int step : {1, kPlane})
-            each([step](const uint16_t* r) { return uint16_t(r[0] & r[step]); });
-        for (uint16_t& r : rows_)
-            r = uint16_t(r | r << 1);
-        for (const int step : {1, kPlane})
-            each([step](const uint16_t* r) { return uint16_t(r[0] | r[-step]); });
+        each([](const uint16_t* r) { return at(r) & at(r) >> 1; });
+        each([](const uint16_t* r) { return at(r) & at(r + 1); });
+        each([](const uint16_t* r) { return at(r) & at(r + kPlane); });
+        each([](const uint16_t* r) { return at(r) | at(r) << 1; });
+        each([](const uint16_t* r) { return at(r) | at(r - 1); });
+        each([](const uint16_t* r) { return at(r) | at(r - kPlane); });
     }
 
 private:
-    static constexpr int kPlane = 16; // rows; one more plane stands below and above
-    static constexpr int place(int i) { return i < 0 ? 0 : i < kBrickSide ? 1 : 2; }
+    static constexpr int kPlane = 16; // rows
+    using Rows = std::array<uint16_t, size_t(16) * kPlane>;
+    typedef uint16_t Eight __attribute__((vector_size(16)));
 
-    /// Replaces rows by what `of` makes of them and those near. The ends of neighbouring planes touch: after three such
-    /// steps, rows less than three from an end of a plane may be wrong.
-    template <class Of> void each(Of of) {
-        const std::array<uint16_t, size_t(18) * kPlane> before = rows_;
-        for (size_t i = kPlane; i < size_t(17) * kPlane; ++i)
-            rows_[i] = of(&before[i]);
+    /// The rows of a slice, as 16 bits each.
+    static Eight eight_of(uint64_t slice) {
+        typedef uint8_t Bytes __attribute__((vector_size(8)));
+        return __builtin_convertvector(reinterpret_cast<Bytes>(slice), Eight);
+    }
+    static Eight at(const uint16_t* rows) {
+        Eight found;
+        std::memcpy(&found, rows, sizeof found);
+        return found;
     }
 
-    std::array<uint16_t, size_t(18) * kPlane> rows_{};
+    /// Replaces the rows of planes with voxels by what `of` makes of them and those near, eight at a time. The ends of
+    /// neighbouring planes touch: after three such steps, rows less than three from an end of a plane may be wrong.
+    template <class Of> void each(Of of) {
+        alignas(16) Rows made;
+        constexpr size_t first = size_t(kFirst - margin) * kPlane, end = size_t(kFirst + kBrickSide + margin) * kPlane;
+        for (size_t i = first; i < end; i += 8) {
+            const Eight eight = of(&rows_[i]);
+            std::memcpy(&made[i], &eight, sizeof eight);
+        }
+        std::memcpy(&rows_[first], &made[first], (end - first) * sizeof rows_[0]);
+    }
+
+    alignas(16) Rows rows_{};
 };
 
 } // namespace voxrt::voxelize

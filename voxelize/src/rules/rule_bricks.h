@@ -57,24 +57,34 @@ public:
 
     /// The number of the brick with a code, or kEmpty or kFull where none is listed.
     uint32_t find(uint64_t code) const {
-        for (size_t at = hash(code);; at = (at + 1) & (table_.size() - 1)) {
-            if (table_[at].number == kEmpty)
-                return find_octant(voxels_, code) < voxels_.octant_codes.size() ? kFull : kEmpty;
-            if (table_[at].code == code)
-                return table_[at].number;
-        }
+        const uint32_t cube = find_cube(code >> kCubeBits);
+        if (cube != kEmpty)
+            return cubes_[cube][size_t(code & (kCubeBricks - 1))];
+        return find_octant(voxels_, code) < voxels_.octant_codes.size() ? kFull : kEmpty;
     }
 
     /// The 3 x 3 x 3 bricks around brick `i`, itself in the middle: x + 3 y + 9 z. Those without a bit in `wanted` are
     /// not looked for.
     std::array<uint32_t, 27> around(size_t i, uint32_t wanted = 0x7FF'FFFF) const {
         const uint64_t code = bricks_[i].code;
-        const int x = int(gather_bits(code)), y = int(gather_bits(code >> 1)), z = int(gather_bits(code >> 2));
+        const uint32_t side = voxels_.depth > 3 ? 1u << (voxels_.depth - 3) : 1;
+        uint64_t codes[3][3]; // by axis, of the coordinate before, its own and the one after
+        bool is_in[3][3];
+        for (int axis = 0; axis < 3; ++axis) {
+            const uint32_t at = gather_bits(code >> axis);
+            for (uint32_t step = 0; step < 3; ++step) {
+                is_in[axis][step] = at + step > 0 && at + step <= side;
+                codes[axis][step] = morton(at + step - 1, 0, 0) << axis;
+            }
+        }
         std::array<uint32_t, 27> found;
-        for (int n = 0; n < 27; ++n)
-            found[size_t(n)] = n == 13           ? uint32_t(i)
-                               : wanted >> n & 1 ? find_at(x + n % 3 - 1, y + n / 3 % 3 - 1, z + n / 9 - 1)
-                                                 : kEmpty;
+        for (int n = 0; n < 27; ++n) {
+            const int x = n % 3, y = n / 3 % 3, z = n / 9;
+            const bool looked_for = (wanted >> n & 1) != 0 && is_in[0][x] && is_in[1][y] && is_in[2][z];
+            found[size_t(n)] = n == 13      ? uint32_t(i)
+                               : looked_for ? find(codes[0][x] | codes[1][y] | codes[2][z])
+                                            : kEmpty;
+        }
         return found;
     }
 
@@ -93,14 +103,20 @@ public:
     }
 
 private:
+    static constexpr int kCubeBits = 9; // of the code of a brick in its cube of 8 x 8 x 8 bricks
+    static constexpr size_t kCubeBricks = size_t{1} << kCubeBits;
     struct Entry {
         uint64_t code = 0;
-        uint32_t number = kEmpty;
+        uint32_t cube = kEmpty;
     };
 
-    /// Bricks of one cube of 8 x 8 x 8 are near one another: one is often looked for after the other.
-    size_t hash(uint64_t code) const {
-        return (size_t((code >> 9) * 0x9E37'79B9'7F4A'7C15 >> shift_) + size_t(code & 511)) & (table_.size() - 1);
+    size_t place_of(uint64_t code) const { return size_t(code * 0x9E37'79B9'7F4A'7C15 >> shift_); }
+
+    /// The number of the cube with a code, or kEmpty where none of its bricks is listed.
+    uint32_t find_cube(uint64_t code) const {
+        for (size_t at = place_of(code);; at = (at + 1) & (table_.size() - 1))
+            if (table_[at].cube == kEmpty || table_[at].code == code)
+                return table_[at].cube;
     }
 
     static void sort(std::vector<RuleBrick>& bricks) {
@@ -109,16 +125,46 @@ private:
 
     void index() {
         sort(bricks_);
+        size_t cubes = 0;
+        for (size_t i = 0; i < bricks_.size(); ++i)
+            cubes += i == 0 || bricks_[i].code >> kCubeBits != bricks_[i - 1].code >> kCubeBits;
         int bits = 4;
-        while (size_t{1} << bits < 2 * bricks_.size())
+        while (size_t{1} << bits < 2 * cubes)
             ++bits;
         shift_ = 64 - bits;
         table_.assign(size_t{1} << bits, Entry{});
+        cubes_.clear();
+        cubes_.reserve(cubes);
         for (size_t i = 0; i < bricks_.size(); ++i) {
-            size_t at = hash(bricks_[i].code);
-            while (table_[at].number != kEmpty)
-                at = (at + 1) & (table_.size() - 1);
-            table_[at] = {bricks_[i].code, uint32_t(i)};
+            const uint64_t code = bricks_[i].code >> kCubeBits;
+            if (i == 0 || code != bricks_[i - 1].code >> kCubeBits) {
+                size_t at = place_of(code);
+                while (table_[at].cube != kEmpty)
+                    at = (at + 1) & (table_.size() - 1);
+                table_[at] = {code, uint32_t(cubes_.size())};
+                const size_t octant = find_octant(voxels_, code << kCubeBits);
+                cubes_.emplace_back().fill(
+                    octant < voxels_.octant_codes.size() && bits_of(octant) >= kCubeBits ? kFull : kEmpty);
+            }
+            cubes_.back()[size_t(bricks_[i].code & (kCubeBricks - 1))] = uint32_t(i);
+        }
+        mark_full();
+    }
+
+    /// Bits of the codes of bricks in an octant.
+    int bits_of(size_t octant) const { return 3 * (voxels_.octant_levels[octant] - kBrickBits); }
+
+    /// Marks the bricks of octants in the cubes.
+    void mark_full() {
+        for (size_t i = 0; i < voxels_.octant_codes.size(); ++i) {
+            const int bits = bits_of(i);
+            if (bits >= kCubeBits)
+                continue; // its cubes are full from the beginning
+            const uint64_t first = voxels_.octant_codes[i] << bits;
+            const uint32_t cube = find_cube(first >> kCubeBits);
+            for (uint64_t code = first; cube != kEmpty && code < first + (uint64_t{1} << bits); ++code)
+                if (uint32_t& number = cubes_[cube][size_t(code & (kCubeBricks - 1))]; number == kEmpty)
+                    number = kFull;
         }
     }
 
@@ -156,7 +202,8 @@ private:
 
     const SparseVoxels& voxels_;
     std::vector<RuleBrick> bricks_; // by code
-    std::vector<Entry> table_;      // open addressing
+    std::vector<std::array<uint32_t, kCubeBricks>> cubes_;
+    std::vector<Entry> table_; // of cubes, by open addressing
     int shift_ = 60;
 };
 
