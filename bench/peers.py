@@ -2,21 +2,18 @@
 
 Usage: ``pip install --group bench``, then ``python bench/peers.py [--write]``; ``--help`` tells how often and how long.
 Meshes: generated displaced spheres of 70 k and 810 k triangles, and the skull where the assets are there. Depths 7 to
-10, and to 12 for voxrt. Figures are medians of the runs; a run that takes longer or more memory than allowed is told as
-such, and greater depths of it are left out. ``--write`` puts the tables into ``bench/results/peers.md`` and plots into
-``docs/pictures/peers.svg`` as well.
+10, and to 12 for voxrt. Then programs from file to file: the skull as GLB by voxrt, and by voxquant and MeshLib where
+``python bench/acid.py`` has installed them. Figures are medians of the runs; a run that takes more time or memory than
+allowed is told as such, and greater depths of it are left out. ``--write`` puts the tables into
+``bench/results/peers.md`` and plots into ``docs/pictures/peers.svg`` as well.
 """
 
 from __future__ import annotations
 
 import json
-import os
-import resource
 import statistics
-import subprocess
 import sys
 import tempfile
-import time
 from dataclasses import asdict, dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -24,6 +21,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from peer import MAKES, TOOLS
+from peer_files import race
+from peer_process import run_confined
 from report import ROOT, machine, options_of, publish, table
 
 from voxelize import SKULL, displaced_sphere
@@ -43,7 +42,6 @@ COLOURS = {
     "Open3D columns": "#2ca02c",
     "PyVista": "#9467bd",
 }
-NO_MEMORY = ("MemoryError", "bad_alloc", "Unable to allocate", "Cannot allocate memory", "out of memory")
 
 
 @dataclass(frozen=True)
@@ -78,31 +76,11 @@ def meshes(folder: Path) -> dict[str, Path]:
 
 def once(tool: str, file: Path, depth: int, seconds: float, limit: int) -> dict[str, float] | str:
     """Run a tool once; what is measured, or why nothing is."""
-
-    def confine() -> None:
-        resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-
     command = [sys.executable, str(Path(__file__).with_name("peer.py")), tool, str(file), str(depth)]
-    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
-        start = time.perf_counter()
-        process = subprocess.Popen(command, stdout=out, stderr=err, preexec_fn=confine)  # noqa: PLW1509 - no threads
-        while (ended := os.wait4(process.pid, os.WNOHANG))[0] == 0:
-            if time.perf_counter() - start > seconds:
-                process.kill()
-                ended = os.wait4(process.pid, 0)
-                process.returncode = -1
-                return f"more than {seconds:g} s"
-            time.sleep(0.002)
-        wall = time.perf_counter() - start
-        process.returncode = os.waitstatus_to_exitcode(ended[1])
-        for stream in (out, err):
-            stream.seek(0)
-        if process.returncode != 0:
-            errors = err.read().decode("utf-8", "replace")
-            died = process.returncode < 0 and "Error" not in errors
-            return "out of memory" if died or any(word in errors for word in NO_MEMORY) else errors.splitlines()[-1]
-        return {"wall": wall, "peak": ended[2].ru_maxrss / 1024, **json.loads(out.read().splitlines()[-1])}
+    ended = run_confined(command, seconds, limit)
+    if isinstance(ended, str):
+        return ended
+    return {"wall": ended.wall, "peak": ended.peak, **json.loads(ended.printed.splitlines()[-1])}
 
 
 def measure(tool: str, mesh: str, file: Path, depth: int, options: argparse.Namespace) -> Run:
@@ -189,7 +167,8 @@ def main() -> None:
                     print(f"{mesh} {2**depth}³ {tool}: {_cell(runs[-1])}", file=sys.stderr, flush=True)
                     if runs[-1].failure:
                         break
-    text = tables(runs, options)
+        programs = race(Path(folder), options)
+    text = tables(runs, options) + programs
     publish("peers.md", "# Beside other voxelizers\n\n" + text, write=options.write)
     if options.json:
         options.json.write_text(json.dumps([asdict(run) for run in runs], indent=2) + "\n")

@@ -1,0 +1,85 @@
+"""Programs that turn a file into a file of voxels, for peers.py: whole processes, in turns, on a scan as GLB."""
+
+from __future__ import annotations
+
+import importlib.util
+import shutil
+import statistics
+import subprocess
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from peer_process import Ended, run_confined
+from report import ROOT, table
+
+from voxelize import SKULL
+
+if TYPE_CHECKING:
+    import argparse
+
+ENVIRONMENT = ROOT / "build" / "acid" / "bin"
+"""Where ``python bench/acid.py`` puts the tools."""
+MESHLIB = Path(__file__).with_name("peer_meshlib.py")
+DEPTHS = (8, 9, 10, 11)
+# In a process of its own: what a process has in memory counts for those that it starts, too.
+EXPORT = "import sys, trimesh; m = trimesh.load(sys.argv[1], process=False); m.export(sys.argv[2]); print(len(m.faces))"
+
+
+def programs() -> tuple[dict[str, tuple[str, list[str | Path]]], list[str]]:
+    """Return what each program makes, and its command: FILE, DEPTH, SIDE and OUT stand for these; and who is absent."""
+    builder = Path(sys.executable).with_name("voxrt-build")
+    found = {"voxrt": ("solid, materials, shared octree", [builder, "FILE", "-q", "-o", "OUT", "--depth", "DEPTH"])}
+    voxquant = shutil.which("voxquant", path=ENVIRONMENT) or shutil.which("voxquant")
+    if voxquant:
+        found["voxquant"] = ("surface", [voxquant, "-i", "FILE", "-o", "OUT.vox", "--res", "SIDE"])
+    python = sys.executable if importlib.util.find_spec("meshlib") else ENVIRONMENT / "python"
+    if Path(python).exists():
+        found["MeshLib"] = ("signed distances near the surface", [python, MESHLIB, "FILE", "SIDE", "OUT.vdb"])
+    return found, [name for name in ("voxquant", "MeshLib") if name not in found]
+
+
+def race(folder: Path, options: argparse.Namespace) -> str:
+    """Return a section with the medians of each program at each depth."""
+    if not SKULL.exists():
+        print(f"no race of programs: {SKULL} is not there", file=sys.stderr)
+        return ""
+    found, absent = programs()
+    for name in absent:
+        print(f"{name} is left out: it is not here; python bench/acid.py installs it", file=sys.stderr)
+    scan = folder / "scan.glb"
+    exported = subprocess.run([sys.executable, "-c", EXPORT, SKULL, scan], check=True, capture_output=True, text=True)
+    cells: dict[str, list[str]] = {name: [] for name in found}
+    for depth in sorted(set(options.depths) & set(DEPTHS)):
+        runs: dict[str, list[Ended | str]] = {name: [] for name in found}
+        for _ in range(options.runs):  # in turns, so that a busy machine slows all of them
+            for name, (_, command) in found.items():
+                if not any(isinstance(run, str) for run in runs[name]):
+                    runs[name].append(once(command, scan, depth, folder, options))
+        for name in found:
+            cells[name].append(cell(runs[name]))
+            print(f"scan.glb {2**depth}³ {name}: {cells[name][-1]}", file=sys.stderr, flush=True)
+    sides = [f"{2**depth}³" for depth in sorted(set(options.depths) & set(DEPTHS))]
+    rows = [(name, found[name][0], *cells[name]) for name in found]
+    about = (
+        "From file to file: seconds of the whole process / peak memory. The skull, "
+        f"{int(exported.stdout):,} triangles; medians of {options.runs}, in turns."
+    )
+    return f"\n## A scan as GLB\n\n{about}\n\n{table(('program', 'makes', *sides), rows)}"
+
+
+def once(command: list[str | Path], scan: Path, depth: int, folder: Path, options: argparse.Namespace) -> Ended | str:
+    """Run a program once."""
+    values = {"FILE": str(scan), "DEPTH": str(depth), "SIDE": str(2**depth)}
+    arguments = [values.get(str(word), str(word).replace("OUT", str(folder / "made"))) for word in command[1:]]
+    return run_confined([str(command[0]), *arguments], options.seconds, int(options.gigabytes * 2**30))
+
+
+def cell(runs: list[Ended | str]) -> str:
+    """Return the medians, or the first failure."""
+    for run in runs:
+        if isinstance(run, str):
+            return run
+    ended = [run for run in runs if isinstance(run, Ended)]
+    wall, peak = (statistics.median(getattr(run, key) for run in ended) for key in ("wall", "peak"))
+    return f"{wall:.3f} / {peak:,.0f} MB"
