@@ -92,19 +92,11 @@ bool leaves_none_alone(const BrickWindow<2>& filled, const BrickWindow<2>& touch
 
 Slices find_candidates(const RuleBricks& bricks, size_t i, const std::array<uint32_t, 27>& around) {
     BrickWindow<3> bulk;
-    BrickWindow<1> thin;
-    bulk.gather(bricks.sets(around, [](const RuleBrick& b) -> const Slices& { return b.filled; }));
-    bulk.open();
-    bulk.dilate();
-    thin.gather(bricks.sets(around, [](const RuleBrick& b) -> const Slices& { return b.touched; }));
-    // The bulk is known two voxels into the margin, and what is thin one voxel.
-    constexpr uint16_t known = 0b0001'1111'1111'1000;
     BrickWindow<1> apart;
-    uint16_t any = 0;
-    for (int z = -1; z <= kBrickSide; ++z)
-        for (int y = -1; y <= kBrickSide; ++y)
-            any |= apart.row(y, z) = thin.row(y, z) & uint16_t(~bulk.row(y, z)) & known;
-    if (any == 0)
+    bulk.gather(bricks.sets(around, [](const RuleBrick& b) -> const Slices& { return b.filled; }));
+    bulk.keep_near_cubes();
+    apart.gather(bricks.sets(around, [](const RuleBrick& b) -> const Slices& { return b.touched; }));
+    if (!apart.remove(bulk))
         return {};
     apart.dilate();
     const Slices removed = bricks[i].removed();
