@@ -224,6 +224,7 @@ fuzz: $(FUZZERS:%=build/fuzz/native/%-fuzzer)
 
 covered = $(CXX) -std=c++20 -O2 -g -fno-sanitize-recover=all -fsanitize=address,$(UNDEFINED) -I$(CURDIR)/build/sanitize/include
 COVERED := $(patsubst %.cpp,build/fuzz/native/objects/%.o,$(call sources,voxelize) $(call sources,octree))
+build/fuzz/native/objects/%_portable.o: covered += -Wno-psabi
 build/fuzz/native/objects/%_avx2.o: covered += $(AVX2)
 build/fuzz/native/objects/%_avx512.o: covered += $(AVX512)
 build/fuzz/native/objects/%.o: %.cpp $(HEADERS) | build/sanitize/include/voxrt

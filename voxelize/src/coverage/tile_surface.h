@@ -81,8 +81,8 @@ public:
         }
     }
 
-    /// Receives that a triangle covers voxels of eight columns, and crosses the surface at some of them, one of a
-    /// column at most: of brick `k` in group `group` of row `y` of the tile.
+    /// A triangle covers voxels of eight columns, and crosses the surface at some of them, one of a column at most: in
+    /// brick `k` of group `group` of row `y` of the tile.
     [[gnu::always_inline]] void add_row(int group, int y, int k, ColumnBytes covered, ColumnBytes crossed,
                                         bool enters) {
         const int column = (y >> kBrickBits) * kTileBricks + group, row = y & (kBrickSide - 1);

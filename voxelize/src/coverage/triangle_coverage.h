@@ -1,4 +1,5 @@
-// Which voxels a triangle covers, and which columns it crosses: exact, a row of columns at a time.
+// Which voxels a triangle covers, and which columns it crosses: exact, for triangles of any size and any receiver.
+// Where speed matters, vector_coverage.h makes the same tests for eight columns at a time.
 //
 // A voxel is covered when the closed triangle meets the voxel's open interior. Thirteen axes can separate a box from a
 // triangle (3 box normals, the triangle's normal, 9 products of edges; Akenine-Moeller, "Fast 3D Triangle-Box Overlap

@@ -208,8 +208,9 @@ inline void set_all(LongLanes& lanes, int64_t v) {
     lanes = each_long([&](int) { return v - LongPart{}; });
 }
 inline Lanes one_unless_less(const LongLanes& a, const LongLanes& b) {
-    return each(
-        [&](int i) { return reinterpret_cast<Part>((a.part[i] >= b.part[i]) & reinterpret_cast<LongPart>(1 - Part{})); });
+    return each([&](int i) {
+        return reinterpret_cast<Part>((a.part[i] >= b.part[i]) & reinterpret_cast<LongPart>(1 - Part{}));
+    });
 }
 inline LongLanes less_if_reached(const LongLanes& rest, const LongLanes& limit) {
     return each_long([&](int i) { return rest.part[i] - ((rest.part[i] >= limit.part[i]) & limit.part[i]); });

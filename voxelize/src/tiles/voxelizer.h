@@ -18,7 +18,7 @@
 //   analysis  vertices snapped, closed surfaces recognized, holes capped         triangles; memory bandwidth
 //   bin       triangles listed by tile                                           triangles; one thread
 // then tile by tile
-//   coverage  triangles to shell bricks and crossings; boxes and balls           columns under triangles; L2 cache
+//   coverage  triangles to shell bricks and crossings; boxes and balls           columns under triangles; vector units
 //   fill      brick columns swept, the inside claimed                            surface bricks; L2 cache
 //   holes     the same for surfaces with holes                                   surface bricks, voxels near holes
 //   order     bricks put in Morton order                                         surface bricks; L2 cache
