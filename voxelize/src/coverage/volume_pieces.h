@@ -77,14 +77,16 @@ public:
     /// The area seen along z, positive where corners run counter-clockwise, and the volume between the polygon and the
     /// plane z = top. In float64.
     void measure(double top, double& area, double& volume) const {
-        area = volume = 0;
+        double area2 = 0, volume6 = 0;
         const auto& a = corners_[0].at;
         for (int i = 2; i < count_; ++i) {
             const auto &b = corners_[size_t(i - 1)].at, &c = corners_[size_t(i)].at;
-            const double part = ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2;
-            area += part;
-            volume += part * ((top - a[2]) + (top - b[2]) + (top - c[2])) / 3;
+            const double part = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+            area2 += part;
+            volume6 += part * ((top - a[2]) + (top - b[2]) + (top - c[2]));
         }
+        area = area2 / 2;
+        volume = volume6 / 6;
     }
 
 private:
@@ -244,6 +246,17 @@ void add_pieces(const Vertex& a, const Vertex& b, const Vertex& c, const Window&
         // A flat piece between two voxels counts for the lower one, where it adds no volume.
         const int high = column.highest(2), low = std::min(column.lowest(2), high);
         const Polygon<double> local = column.from(x, y, low);
+        if (high == low + 1) { // most columns: the upper piece is what the lower one leaves
+            const Polygon<double> lower = local.slab(2, 0);
+            double area, volume, lower_area = 0, lower_volume = 0;
+            local.measure(2, area, volume);
+            if (lower.count() >= 3) {
+                lower.measure(1, lower_area, lower_volume);
+                report(x, y, low, -lower_area, -lower_volume);
+            }
+            report(x, y, high, lower_area - area, lower_area + lower_volume - volume);
+            return;
+        }
         for (int z = low; z <= high; ++z) {
             const Polygon<double> piece = low == high ? local : local.slab(2, z - low);
             if (piece.count() < 3)
