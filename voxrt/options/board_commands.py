@@ -73,7 +73,8 @@ class BitstreamCommand:
     board: str = option(text("NAME"), MISSING, HARDWARE,
         "Name of the board, such as ulx3s-85f. Or the path of a board.json, which describes a board of yours.")
     output: Path = option(file("DIR|FILE"), Path(), OUTPUT,
-        "Folder for the files, which is made if it is missing. Or the file of the bitstream: NAME.bit or .fs.", flags=("--output", "-o"))
+        "Folder for the files, which is made if it is missing. Or the file of the bitstream: NAME.bit or .fs.",
+        flags=("--output", "-o"))
     depth: int | None = DEPTH.field(help="Levels of the octree of an asset. The default is 7.")
     load: bool = option(FLAG, False, HARDWARE,
         "Load the bitstream into the board that is plugged in, by openFPGALoader.")
