@@ -201,8 +201,6 @@ class SceneMemory:
         ------
         Refused, DeviceError
             As :meth:`begin_edits`; frames show what they did before.
-        DoesNotFitError
-            The world has no room for the word of the root. Nothing was written.
         """
         world, before = self._world, self._scene
         if world is None or before is None:
@@ -211,9 +209,9 @@ class SceneMemory:
         if self._in_doubt:
             self.begin_edits(world, scene)
         else:
+            self._in_doubt = True
             if patch.end > self._device.identity.capacity:
                 raise Refused(f"the edit leads beyond the {self._device.identity.capacity} words of the device")
-            self._in_doubt = True
             if not np.array_equal(scene.colours, before.colours) or not np.array_equal(scene.mirrors, before.mirrors):
                 self._device.write_materials(scene.colours, scene.mirrors)
             self._device.apply_patch(patch, scene.depth)
