@@ -63,11 +63,6 @@ class EditedMemory:
         # Their corners go to multiples of powers of two of the whole grid.
         if any(isinstance(one, BoxCollider) for row in near for one in objects[row].colliders):
             return False
-        try:
-            for material in materials[1:]:
-                self._world.add_material(material)
-        except voxrt.DoesNotFitError:  # those that no object has any more count, too
-            return False
         scene = replace(self._scene, objects=tuple(objects), materials=(self._scene.materials[0], *materials[1:]))
         self._make(replace(scene, objects=tuple(objects[row] for row in near)), low, high)
         self._scene, self._boxes = scene, boxes
