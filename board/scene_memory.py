@@ -8,10 +8,13 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from voxrt.board.edited_scene import rom_of
 from voxrt.board.errors import DeviceError, Refused
 from voxrt.board.patch_writes import check_kept
 from voxrt.board.scene import check_memory
+from voxrt.octree import Box, Patch, World
 from voxrt.octree.words import EMPTY, move_pointers
+from voxrt.voxelize import DoesNotFitError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -20,10 +23,12 @@ if TYPE_CHECKING:
 
     from voxrt.board.device import Device
     from voxrt.board.scene import Scene
-    from voxrt.octree import World
 
 _BURST = 4096  # words per step, at least
 _STEPS = 256  # to write a scene, at most: a frame may come between two
+_PATCH_PART = 4  # a patch has a word per so many of the scene, at most
+_IDS = tuple(str(number) for number in range(256))  # names, so that worlds keep the numbers of materials
+_BLACK, _DULL = np.zeros((256, 3), np.uint8), np.zeros(256, np.bool_)
 
 
 class Progress(Protocol):
@@ -55,6 +60,8 @@ class SceneMemory:
     Where two scenes fit, the new one is written to the part of the memory that the present one does not use. Then its
     materials, depth and root are written while the device is held: frames show either scene, and never a mixture.
 
+    A scene that has most blocks of the present one is written as a patch: see :class:`voxrt.octree.Patch`.
+
     Where two scenes do not fit, the device is held while the new one replaces the present one. If that fails, the
     present one is written again from this object's copy.
 
@@ -73,6 +80,7 @@ class SceneMemory:
         self._world: World | None = None  # whose image the memory holds
         self._root = 0  # of the world: what frames show
         self._in_doubt = False  # whether the memory holds the last patch
+        self._loads: World | None = None  # the world of scenes that were loaded by patches
 
     @property
     def loaded(self) -> Scene | None:
@@ -149,6 +157,8 @@ class SceneMemory:
             As :meth:`load`.
         """
         self.check(scene)
+        if self._load_patch(scene, try_scene):
+            return
         base = self._free_base(len(scene.words))
         if base is None:
             self._overwrite(scene, progress, try_scene)
@@ -201,8 +211,6 @@ class SceneMemory:
         ------
         Refused, DeviceError
             As :meth:`begin_edits`; frames show what they did before.
-        DoesNotFitError
-            The world has no room for the word of the root. Nothing was written.
         """
         world, before = self._world, self._scene
         if world is None or before is None:
@@ -211,10 +219,10 @@ class SceneMemory:
         if self._in_doubt:
             self.begin_edits(world, scene)
         else:
+            self._in_doubt = True
             if patch.end > self._device.identity.capacity:
                 raise Refused(f"the edit leads beyond the {self._device.identity.capacity} words of the device")
-            self._in_doubt = True
-            if not np.array_equal(scene.colours, before.colours) or not np.array_equal(scene.mirrors, before.mirrors):
+            if not _same_materials(scene, before):
                 self._device.write_materials(scene.colours, scene.mirrors)
             self._device.apply_patch(patch, scene.depth)
             self._scene, self._root, self._in_doubt = scene, patch.root, False
@@ -231,6 +239,49 @@ class SceneMemory:
         live = np.append(world.written[:, None] + np.arange(8, dtype=np.uint32), np.uint32(world.live_roots[-1]))
         found = self._device.read_memory(0, len(image))
         return zlib.crc32(found[live].tobytes()) == zlib.crc32(image[live].tobytes())
+
+    def _load_patch(self, scene: Scene, try_scene: Callable[[], None] | None) -> bool:
+        """Show a scene that has most blocks of the present one. False where another does; then nothing was written."""
+        world = self._world_of_loads(scene)
+        if world is None:
+            return False
+        self._loads = None
+        try:
+            world.fill(Box((0, 0, 0), (world.size,) * 3), 0)
+            world.paste(rom_of(replace(scene, names=_IDS, colours=_BLACK, mirrors=_DULL)), (0, 0, 0))
+        except DoesNotFitError:
+            return False
+        older, patch = world.live_roots, world.commit()
+        same = not len(patch.addresses) and _same_materials(scene, self._scene)
+        if same or _PATCH_PART * patch.words > len(scene.words):
+            return False  # who loads a scene again wants it written again
+        try:
+            self._device.write_materials(scene.colours, scene.mirrors)
+            self._device.apply_patch(_moved(patch, self._base), scene.depth)
+            self._device.select_scene(self._base + patch.root, scene.depth)  # a serial board takes its cameras with it
+            if try_scene is not None:
+                try_scene()
+        except BaseException as error:
+            self._restore(error, overwritten=False)
+            raise
+        self._scene, self._world, self._root, self._loads = scene, world, patch.root, world
+        for root in older:
+            if root != patch.root:
+                world.release(root)
+        return True
+
+    def _world_of_loads(self, scene: Scene) -> World | None:
+        """Return a world that has the words of the present scene, where they may be most of a scene."""
+        present = self._scene
+        if present is None or self._in_doubt or present.depth != scene.depth or scene.roots != (0,):
+            return None
+        if self._world is not None:
+            return self._world if self._world is self._loads else None
+        if present.roots != (0,):
+            return None
+        memory = rom_of(replace(present, names=_IDS, colours=_BLACK, mirrors=_DULL))
+        world = World(memory, words=self._device.identity.capacity - self._base, undo_steps=0)
+        return world if np.array_equal(world.image, present.words) else None
 
     def _free_base(self, count: int) -> int | None:
         """Find where `count` words fit beside the loaded scene: before it, or at the end of the memory.
@@ -303,6 +354,20 @@ class SceneMemory:
             self._select(loaded, self._base)
         except DeviceError as second:
             raise DeviceError(f"{error}; and the present scene could not be restored: {second}") from error
+
+
+def _same_materials(scene: Scene, other: Scene | None) -> bool:
+    return (
+        other is not None
+        and np.array_equal(scene.colours, other.colours)
+        and np.array_equal(scene.mirrors, other.mirrors)
+    )
+
+
+def _moved(patch: Patch, base: int) -> Patch:
+    """Return a patch for a memory whose word 0 stands at word `base`."""
+    words = move_pointers(np.append(patch.blocks, np.uint32(patch.root_word)), base)
+    return Patch(patch.root + base, int(words[-1]), patch.addresses + np.uint32(base), words[:-1].reshape(-1, 8))
 
 
 def _ignore(_stage: str, _done: int, _total: int) -> None:

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 _MOST_WORDS = 1 + 8 * ((1 << 28) - 1)
 _MOST_SIDE = 1 << 16
+_MOST_AUTHOR = 2**32 - 1
 
 
 class World:
@@ -42,7 +43,8 @@ class World:
         The most words that the memory may have: its octree, and whatever is kept for undo and for live roots. None:
         as many as addresses reach.
     undo_steps
-        The edits that can be undone, 0 … 1,000,000. They are forgotten early where an edit needs their words.
+        The edits of all authors that can be undone, 0 … 1,000,000. They are forgotten early where an edit needs their
+        words.
 
     Raises
     ------
@@ -75,6 +77,7 @@ class World:
             raise DoesNotFitError(
                 f"{rom.name}: its {len(rom.octree.words):,} words do not fit the {self._limit:,} of the world's memory"
             )
+        self._author = 0
         self._native = _native.World(rom.octree.words, rom.octree.depth, self._limit, steps)
 
     def __repr__(self) -> str:
@@ -278,8 +281,42 @@ class World:
         self._check_fit(self._native.paste(other.octree.words, other.octree.depth, other.size, corner, quarters, ids))
         self._materials = materials
 
+    @property
+    def author(self) -> int:
+        """Who edits, undoes and does again from now on: an integer, 0 … 2**32 - 1; 0 at the beginning.
+
+        Examples
+        --------
+        >>> from voxrt.octree import Rom, World, from_points
+        >>> from voxrt.voxelize import EMPTY, Material
+        >>> oak = Material("oak", (160, 110, 60))
+        >>> world = World(Rom("dot", from_points([[1, 2, 3]], [1], depth=2), (EMPTY, oak)))
+        >>> world.set([[0, 0, 0]], 1)
+        >>> world.author = 1
+        >>> world.set([[0, 0, 0], [1, 2, 3]], 0)
+        >>> world.author = 0
+        >>> world.undo()  # voxel 0, 0, 0 stays as author 1 has left it
+        True
+        >>> world.material_at([[0, 0, 0], [1, 2, 3]])
+        array([0, 0], dtype=uint8)
+        """
+        return self._author
+
+    @author.setter
+    def author(self, author: int) -> None:
+        self._author = whole("author", author, 0, _MOST_AUTHOR)
+        self._native.set_author(self._author)
+
     def undo(self) -> bool:
-        """Go back to the voxels before the last edit that is not undone. False if there is none.
+        """Take back the last edit of :attr:`author` that is not undone. False if there is none.
+
+        An edit is the voxels that it changed. Each of them has then what the last edit that changed it, and is not
+        undone, made of it. So edits of other authors stay.
+
+        Raises
+        ------
+        DoesNotFitError
+            Others have edited since, and the memory has no room for the result. Nothing has changed.
 
         Examples
         --------
@@ -291,16 +328,28 @@ class World:
         >>> world.undo(), world.undo(), world.redo(), world.redo()
         (True, False, True, False)
         """
-        return self._native.undo()
+        return self._turned(self._native.undo())
 
     def redo(self) -> bool:
-        """Do again what was undone last. False if there is nothing, as after another edit."""
-        return self._native.redo()
+        """Do again what :attr:`author` has undone last. False if there is nothing, as after another edit.
+
+        Voxels that others have changed after the edit stay as they are.
+
+        Raises
+        ------
+        DoesNotFitError
+            As :meth:`undo`.
+        """
+        return self._turned(self._native.redo())
 
     @property
     def steps(self) -> tuple[int, int]:
-        """Edits that can be undone, and those that can be done again."""
-        return self._native.undo_steps(), self._native.redo_steps()
+        """Edits of :attr:`author` that can be undone, and those that can be done again."""
+        return self.steps_of(self._author)
+
+    def steps_of(self, author: int) -> tuple[int, int]:
+        """Count the edits of an author that can be undone, and those that can be done again."""
+        return self._native.steps(whole("author", author, 0, _MOST_AUTHOR))
 
     def material_at(self, points: ArrayLike) -> NDArray[np.uint8]:
         """Look up the material of voxels: as :func:`voxrt.octree.material_at`.
@@ -331,8 +380,6 @@ class World:
         ------
         ValueError
             The memory has mean materials. They depend on neighbours: build it without level of detail.
-        DoesNotFitError
-            There is no room for the word of the root. Nothing has changed.
 
         Examples
         --------
@@ -351,10 +398,7 @@ class World:
                 f"{self._rom.name} has mean materials, which depend on neighbours: patches cannot have them; build it "
                 "without level of detail"
             )
-        patch = self._native.commit()
-        if patch is None:
-            raise self._no_room("the word of the root")
-        return Patch(*patch)
+        return Patch(*self._native.commit())
 
     @property
     def live_roots(self) -> tuple[int, ...]:
@@ -407,12 +451,13 @@ class World:
     def _material(self, material: object) -> int:
         return whole("material", material, 0, len(self._materials) - 1)
 
+    def _turned(self, found: bool | None) -> bool:
+        self._check_fit(found is not None)
+        return bool(found)
+
     def _check_fit(self, fits: bool) -> None:
         if not fits:
-            raise self._no_room("the result of the edit")
-
-    def _no_room(self, what: str) -> DoesNotFitError:
-        return DoesNotFitError(
-            f"{what} does not fit the {self._limit:,} words of the world's memory; release older roots, or make the "
-            "world with more words"
-        )
+            raise DoesNotFitError(
+                f"the result of the edit does not fit the {self._limit:,} words of the world's memory; release older "
+                "roots, or make the world with more words"
+            )

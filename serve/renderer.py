@@ -23,7 +23,6 @@ from voxrt.board.view_check import check_view
 from voxrt.octree import Octree, World, solid_bounds
 from voxrt.octree.words import EMPTY
 from voxrt.serve.packets import FramePacket
-from voxrt.voxelize import DoesNotFitError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -186,18 +185,17 @@ class Renderer:
         async with self._loading:
             if self.scene_number != number:
                 raise Refused("another scene was loaded meanwhile; look at it, and edit it then")
-            world = await self.aside(partial(self._changed_world, change))
+            world = await self.aside(partial(self._changed_world, change, client))
             async with self._device_lock:
                 written = await self._on_device(partial(self._show_world, world))
         self._newest_request = (client, request)
         self._changed.set()
         self._edits += 1
-        return {**self.edits, "blocks": written, "materials": len(world.materials)}
+        return {**self.edits(client), "blocks": written, "materials": len(world.materials)}
 
-    @property
-    def edits(self) -> dict[str, int]:
-        """The edits of the scene, those that can be undone, and those that can be done again."""
-        undo, redo = (0, 0) if self.world is None else self.world.steps
+    def edits(self, client: int | None) -> dict[str, int]:
+        """Count the edits of the scene, and those that a client can undo and do again."""
+        undo, redo = (0, 0) if self.world is None or client is None else self.world.steps_of(client)
         return {"number": self._edits, "undo": undo, "redo": redo}
 
     def still_scene(self) -> Scene:
@@ -207,22 +205,19 @@ class Renderer:
         world = self.world
         return self.scene if world is None else replace(self.scene, words=world.rom().octree.words)
 
-    def _changed_world(self, change: Callable[[World], None]) -> World:
+    def _changed_world(self, change: Callable[[World], None], client: int) -> World:
         world = self.world
         if world is None:
             world = World(rom_of(self.still_scene()), words=self.device.identity.capacity)
+        world.author = client
         change(world)
         return world
 
     def _show_world(self, world: World) -> int:
         scene = with_materials(self.scene, world.materials)
-        try:
-            if self.world is None:
-                self._memory.begin_edits(world, scene)
-            written = self._memory.show_edits(scene)
-        except DoesNotFitError as error:
-            world.undo()
-            raise Refused(str(error)) from error
+        if self.world is None:
+            self._memory.begin_edits(world, scene)
+        written = self._memory.show_edits(scene)
         self._shown_frame = 0
         self.scene, self.world = scene, world
         return written

@@ -119,7 +119,7 @@ class Session:
                 "frames": len(scene.roots),
                 "period": scene.period,
                 "warnings": scene.warnings,
-                "edits": renderer.edits,
+                "edits": renderer.edits(self.control.controller),
             },
             "view": {
                 "camera": asdict(renderer.view.camera),

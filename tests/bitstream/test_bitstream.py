@@ -11,6 +11,7 @@ import sys
 
 import numpy as np
 import pytest
+from oracles.gowin_words import gowin_words
 
 import voxrt
 from voxrt.board.designs import build
@@ -154,16 +155,7 @@ def test_the_bitstream_of_a_gowin_holds_the_scene_and_needs_no_tool(monkeypatch)
     scene, beam = board_scene(Blob(rom)), BeamFit(1, 10.0, 1.0, 60.0)
     bits = make_bitstream(board, scene, orbit(rom, (320, 240), CAMERAS), voxrt.Lighting(), beam)
     rams = read_block_rams(bits.decode(), board.design.block_rams)
-    octree = np.zeros(board.design.capacity - 1, np.int64)
-    for piece in board.design.memories["octree"].slices:
-        # A block RAM of 16,384 x 1 bits: 16 of them per row, which has 18.
-        assert (piece.bits, piece.row, piece.rows) == (1, 0, 16384)
-        rows = rams[piece.wid].astype(np.int64)
-        octree |= (
-            np.concatenate([rows[:, None] >> np.arange(8) & 1, rows[:, None] >> np.arange(9, 17) & 1], 1).ravel()
-            << piece.bit
-        )
-    assert np.array_equal(octree, encode_octree(scene.words, board.design.block_bits))
+    assert np.array_equal(gowin_words(board, "octree", rams), encode_octree(scene.words, board.design.block_bits))
     assert board.suffix == ".fs"
 
 

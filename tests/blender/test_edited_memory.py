@@ -81,6 +81,21 @@ def test_edits_are_those_of_a_whole_build(options):
         np.testing.assert_array_equal(shown(rom.octree, rom.materials), shown(tree, materials))
 
 
+def test_new_colours_without_end_need_a_whole_build():
+    things = crowd()
+    reader, _, memory = opened(voxrt.BuildOptions(depth=4))
+    for number in range(300):
+        things[2].data.materials[0] = scenes.paint(f"new {number}", (0, number / 300, 1))
+        bpy.context.view_layer.update()
+        things[2].data.update()
+        before = memory._world.rom().octree.words
+        if not edited(reader, memory, "thing 2"):
+            break
+        memory.commit()
+    assert 100 < number < 299
+    np.testing.assert_array_equal(memory._world.rom().octree.words, before)
+
+
 def test_what_needs_a_whole_build():
     """An object that leaves the grid, one with a texture, one that is not there; a rule that looks at neighbours."""
     options = voxrt.BuildOptions(depth=5)

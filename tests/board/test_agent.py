@@ -7,10 +7,10 @@ import socket
 import struct
 import sys
 import threading
-from contextlib import contextmanager
 
 import numpy as np
 import pytest
+from fakes.agent_client import TOKEN, client
 from fakes.board_agent import running_agent
 from fakes.pynq import Core, install
 
@@ -20,7 +20,6 @@ from voxrt.board.errors import DeviceError
 from voxrt.board.registers import REGISTERS
 from voxrt.board.tcp_device import open_tcp
 
-TOKEN = "as secret as tests can be"
 WORDS = 0x10000 // 4
 LEAVES = struct.pack("<2I", 0xFFFFFF06, 0xFFFFFF07)
 
@@ -38,46 +37,6 @@ def agent(core, monkeypatch):  # noqa: ARG001 - it is in the board
     monkeypatch.setattr(voxrt_board, "VDMA_SECONDS", 0.5)
     with running_agent(TOKEN) as (address, _):
         yield address
-
-
-class Client:
-    """A client that sends what it likes."""
-
-    def __init__(self, line):
-        self.line = line
-        self.greeting = self.receive(28)
-
-    def receive(self, count):
-        data = b""
-        while len(data) < count:
-            part = self.line.recv(count - len(data))
-            if not part:
-                return None
-            data += part
-        return data
-
-    def prove(self, token=TOKEN):
-        self.line.sendall(hmac.digest(token.encode(), self.greeting[12:], "sha256"))
-        return self.answer()
-
-    def answer(self):
-        """The status and the result; None if the agent has closed the line."""
-        head = self.receive(8)
-        if head is None:
-            return None
-        status, count = struct.unpack("<2I", head)
-        return status, self.receive(count)
-
-    def ask(self, operation, a=0, b=0, data=b""):
-        self.line.sendall(struct.pack("<3I", operation, a, b) + data)
-        return self.answer()
-
-
-@contextmanager
-def client(address):
-    host, port = address.removeprefix("tcp://").split(":")
-    with socket.create_connection((host, int(port)), 30) as line:
-        yield Client(line)
 
 
 def test_the_greeting(agent):

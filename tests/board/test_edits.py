@@ -3,26 +3,33 @@
 from __future__ import annotations
 
 import contextlib
+import socket
+import struct
 from dataclasses import replace
 from functools import partial
 from itertools import chain, repeat
 
 import numpy as np
 import pytest
+from fakes.agent_client import client
+from fakes.board_agent import running_agent
 from fakes.box_scenes import boxes, ignore, picture_of, view_of
 from fakes.device import FakeDevice, opened_or_skipped
 from fakes.ecp5_board import Board
 from fakes.pynq import Core, install
 
-from voxrt.board.designs.serial_device import SerialDevice
+from voxrt.board import tcp_device
+from voxrt.board.designs.serial_device import _LIST_WORDS, SerialDevice
 from voxrt.board.designs.serial_link import SerialLink
 from voxrt.board.edited_scene import rom_of, with_materials
 from voxrt.board.errors import DeviceError, Refused
 from voxrt.board.patch_writes import block_writes
+from voxrt.board.registers import REGISTERS
 from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.simulated.core import open_rtl
 from voxrt.board.simulated.model import ModelDevice
-from voxrt.octree import Box, Patch, Rom, Sphere, World, from_points
+from voxrt.board.tcp_device import open_tcp
+from voxrt.octree import Box, Octree, Patch, Rom, Sphere, World, from_points, to_points
 from voxrt.voxelize import EMPTY, Material
 
 SIZE = (48, 32)
@@ -218,6 +225,82 @@ def test_a_world_without_room_on_the_device_is_refused():
         digging.begin()
     with pytest.raises(Refused, match="begin its edits first"):
         SceneMemory(device).show_edits(scene)
+
+
+def dust(points, depth=9):
+    """A scene of single voxels."""
+    rom = Rom("dust", from_points(points, [1] * len(points), depth=depth), (EMPTY, Material("oak", (160, 110, 60))))
+    return with_materials(replace(boxes(1), words=rom.octree.words, depth=depth), rom.materials)
+
+
+@pytest.mark.parametrize("kind", ["serial", "tcp"])
+def test_a_large_ball_takes_many_messages(kind, monkeypatch, open_board):
+    if kind == "serial":
+        board = Board(sdram=True)
+        device, most = opened_serial(board), _LIST_WORDS
+    else:
+        device, most = opened_tcp("cached1", monkeypatch, open_board), tcp_device._BURST
+    digging = Digging(device, words=1 << 18, scene=dust([[1, 2, 3], [256, 256, 200]]))
+    digging.begin()
+    rng = np.random.default_rng(4)
+    digging.world.fill(Sphere((256, 256, 256), 60), 1)
+    if kind == "tcp":  # the blocks of a ball alone fit one message
+        digging.world.set(rng.integers(0, 512, (8000, 3)), 1)
+    assert 8 * digging.show() > most
+    image = digging.world.image
+    live = digging.world.written[:, None] + np.arange(8)
+    np.testing.assert_array_equal(device.read_memory(0, len(image))[live], image[live])
+    assert digging.wrong() == 0
+    digging.world.undo()
+    digging.show()
+    assert digging.wrong() == 0
+
+
+def test_a_patch_that_is_cut_at_any_byte_shows_the_old_voxels(monkeypatch):
+    """All that a client sends for an edit, byte by byte: the agent carries out whole requests alone."""
+    pytest.importorskip("voxrt.sim._rtl", reason="the verilated core is not in this installation")
+    core = Core("tiny")
+    install(monkeypatch, core)
+    with running_agent() as (address, _):
+        device = open_tcp(address, "")
+        digging = Digging(device, words=4000, scene=dust([[3, 2, 1], [9, 9, 12]], depth=4))
+        digging.begin()
+        link, sent = device._registers._link, bytearray()
+        whole = link.ask
+
+        def ask(operation, a=0, b=0, data=b"", **expected):
+            sent.extend(struct.pack("<3I", operation, a, b) + data)
+            return whole(operation, a, b, data, **expected)
+
+        memory = core.read_memory(0, 4000)
+        registers = {name: core.read(REGISTERS[name][0]) for name in ("control", "root", "depth")}
+        old = to_points(digging.world.rom().octree)
+        digging.world.set([[12, 7, 7]], 1)
+        with monkeypatch.context() as patched:
+            patched.setattr(link, "ask", ask)
+            digging.show()
+        new_root = core.read(REGISTERS["root"][0])
+        assert new_root != registers["root"]
+        device.close()
+        shown = []
+        for count in range(len(sent)):
+            core.write_memory(0, memory)
+            for name, value in registers.items():
+                core.write(REGISTERS[name][0], value)
+            with client(address) as one:
+                assert one.prove("")[0] == 0
+                one.line.sendall(sent[:count])
+                one.line.shutdown(socket.SHUT_WR)
+                while one.answer() is not None:
+                    pass
+            words = core.read_memory(0, 4000)
+            words[0] = words[core.read(REGISTERS["root"][0])]
+            shown.append(core.read(REGISTERS["root"][0]) == new_root)
+            if not shown[-1]:
+                for one, other in zip(old, to_points(Octree(4, words)), strict=True):
+                    np.testing.assert_array_equal(one, other)
+    assert shown == sorted(shown)
+    assert len(shown) > 4 * 32
 
 
 @pytest.mark.parametrize("after", range(0, 16, 2))

@@ -3,18 +3,26 @@
 from __future__ import annotations
 
 from contextlib import nullcontext
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from fakes.box_scenes import ignore
+from fakes.box_scenes import boxes, ignore, picture_of, view_of
 from fakes.device import FakeDevice, scene, wide_scene
+from fakes.ecp5_board import Board
 from hypothesis import given
 from hypothesis import strategies as st
 
+from voxrt.board.designs.serial_device import SerialDevice
+from voxrt.board.designs.serial_link import SerialLink
+from voxrt.board.edited_scene import with_materials
 from voxrt.board.errors import DeviceError, Refused
 from voxrt.board.scene import Scene, check_memory
 from voxrt.board.scene_memory import SceneMemory
+from voxrt.board.simulated.model import ModelDevice
+from voxrt.octree import Rom, from_dense
 from voxrt.octree.words import move_pointers
+from voxrt.voxelize import EMPTY, Material
 
 
 def leaves(words, depth):
@@ -35,6 +43,62 @@ def test_scenes_alternate_between_both_ends():
         roots.append(device.root)
     # The scene of 6 blocks (49 words) fits below word 56. No scene fits beside the one of 8 blocks (65 words).
     assert roots == [0, 56, 0, 56, 0, 0, 0]
+
+
+@pytest.mark.parametrize("kind", ["model", "serial"])
+def test_a_scene_that_differs_little_is_a_patch(kind):
+    """As when somebody models it: materials change their numbers, too."""
+    rng = np.random.default_rng(6)
+    device = ModelDevice(capacity=1 << 15)
+    if kind == "serial":
+        device = SerialDevice(SerialLink("test port", Board(sdram=True)), ModelDevice())
+    cube = np.zeros((16, 16, 16), np.uint8)
+    cube[:, :12] = rng.integers(1, 4, (16, 12, 16))
+    memory, written, root = SceneMemory(device), [], set()
+    write = device.write_memory
+    device.write_memory = lambda address, words: (written.append(len(words)), write(address, words))[1]
+    for number in range(14):
+        if number == 9:
+            cube[:] = rng.integers(0, 4, cube.shape)
+        elif number:
+            low = rng.integers(0, 14, 3)
+            cube[tuple(slice(at, at + 2) for at in low)] = 4 if number % 2 else 0
+        rom = Rom("model", from_dense(cube), (EMPTY, *(Material(f"m{i}", (i, number, 9)) for i in range(1, 6))))
+        scene = with_materials(replace(boxes(1), words=rom.octree.words, depth=4), rom.materials)
+        written.clear()
+        memory.load(scene, ignore)
+        if number in {0, 9, 10}:  # the second one stands at the end of the memory, and has no room behind it
+            assert sum(written) == len(scene.words)
+        else:
+            assert sum(written) < len(scene.words) // 4
+        view = view_of(scene, (48, 32))
+        np.testing.assert_array_equal(device.frame(view).colour, picture_of(scene, view))
+        root.add(memory.loaded.roots[0])
+    assert len(root) > 3
+    memory.load(scene, ignore)
+    assert sum(written) >= len(scene.words), "the same scene is written again"
+
+
+def test_a_patch_that_fails_leaves_the_present_scene():
+    cube = np.random.default_rng(3).integers(1, 4, (16, 16, 16)).astype(np.uint8)
+    device = ModelDevice(capacity=1 << 14)
+    memory, scenes = SceneMemory(device), []
+    for number in range(3):
+        cube[number] = 1 + number
+        words = from_dense(cube).words
+        scenes.append(replace(boxes(1), words=words, depth=4))
+    memory.load(scenes[0], ignore)
+
+    def fail():
+        raise DeviceError("too slow")
+
+    view = view_of(scenes[0], (48, 32))
+    for number in (1, 2):
+        with pytest.raises(DeviceError, match="too slow"):
+            list(memory.load_in_steps(scenes[number], ignore, fail))
+        np.testing.assert_array_equal(device.frame(view).colour, picture_of(scenes[number - 1], view))
+        memory.load(scenes[number], ignore)
+        np.testing.assert_array_equal(device.frame(view).colour, picture_of(scenes[number], view))
 
 
 @given(st.lists(st.integers(1, 40), min_size=2, max_size=8), st.integers(41, 80))

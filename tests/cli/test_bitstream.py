@@ -5,10 +5,13 @@ import shutil
 from pathlib import Path
 
 import msgspec
+import numpy as np
 import pytest
+from oracles.gowin_words import gowin_words
 
 import voxrt as package
 from voxrt.board.designs import build
+from voxrt.board.designs.gowin_bitstream import read_block_rams
 from voxrt.boards.bitstream import BaseDesign, Memory, PlacedBoard, board_names, read_board
 from voxrt.cli.commands.bitstream import read_memory, summary_rows
 from voxrt.cli.results.bitstream_results import BitstreamResult
@@ -107,6 +110,24 @@ def test_what_an_asset_gives_up_is_told(voxrt):
     finished = voxrt("bitstream", planet, "--depth", "8", "--board", "ulx3s-85f", "--json")
     assert json.loads(finished.out)["budget"]["words"] == 32_769
     assert "budget" not in voxrt("bitstream", "house.obj", "--board", "ulx3s-85f").err
+
+
+def test_the_block_rams_hold_an_edited_memory(voxrt, folder):
+    pytest.importorskip("voxrt.sim._rtl")
+    voxrt.succeeds("build", "house.obj", "--depth", "4", "-o", "made")
+    edit = {"op": "fill", "sphere": {"centre": [8, 4, 8], "radius": 3.5}, "material": 0}
+    (folder / "dig.jsonl").write_text(json.dumps(edit))
+    voxrt.succeeds("edit", "made/house.mem", "--script", "dig.jsonl", "-o", "dug.mem")
+    words = [int(line, 16) for line in Path(folder, "dug.mem").read_text().split()]
+    assert words != [int(line, 16) for line in Path(folder, "made/house.mem").read_text().split()]
+    result = voxrt.json("bitstream", "dug.mem", "--board", "tang-nano-20k", "-o", "out")
+    board = read_board("tang-nano-20k")
+    rams = read_block_rams(Path(folder, result["bitstream"]).read_text(), board.design.block_rams)
+    found = gowin_words(board, "octree", rams)
+    leaf = 1 << board.design.block_bits
+    expected = [leaf + (word & 0xFF) if word >> 31 else (word - 1) // 8 for word in words[1:]]
+    np.testing.assert_array_equal(found[: len(expected)], expected)
+    assert (found[len(expected) :] == leaf).all()
 
 
 def result_of(reached, **others):

@@ -15,6 +15,12 @@ import pytest
         (["build"], "ASSET is missing"),
         (["build", "house.obj", "--bogus"], "--bogus"),
         (["build", "house.obj", "--dept", "3"], "did you mean --depth"),
+        (["board", "chek", "serial:x"], 'error: \'chek\' is none of "check", "report"; did you mean check; see'),
+        (["completion", "bsh"], 'error: \'bsh\' is none of "bash", "zsh", "fish"; did you mean bash; see'),
+        (
+            ["build", "house.obj", "--rule", "toch"],
+            '--rule: \'toch\' is none of "touch", "centre", "half"; did you mean touch',
+        ),
         (["build", "house.obj", "--depth"], "--depth requires an argument: N"),
         (["build", "house.obj", "--depth", "--json"], "--depth requires an argument: N"),
         (["build", "house.obj", "--depth", "3", "--depth", "4"], "--depth is given 2 times"),

@@ -14,7 +14,7 @@ from voxrt.board.edited_scene import rom_of
 from voxrt.board.errors import DeviceError, Refused
 from voxrt.board.simulated.model import ModelDevice
 from voxrt.export import read_any
-from voxrt.octree import Box, Sphere, World
+from voxrt.octree import Box, Octree, Sphere, World, to_dense
 from voxrt.serve.frame_client import open_client
 from voxrt.serve.server_options import Limits
 from voxrt.sim import render
@@ -72,6 +72,76 @@ async def test_every_frame_shows_the_edit_before_it():
         while client.state["scene"]["edits"]["number"] < len(edits):
             await client.request("counters")
         assert client.state["scene"]["edits"] == {"number": 6, "undo": 4, "redo": 0}
+
+
+class History:
+    """Edits of several authors as arrays of voxels: a voxel has what the last edit that changed it made of it."""
+
+    def __init__(self, cube):
+        self.begin, self.edits = cube, []
+
+    def cube(self):
+        cube = self.begin.copy()
+        for _, before, after, undone in self.edits:
+            if not undone:
+                changed = before != after
+                cube[changed] = after[changed]
+        return cube
+
+    def add(self, author, after):
+        before = self.cube()
+        self.edits = [edit for edit in self.edits if not (edit[0] == author and edit[3])]
+        self.edits.append([author, before, after, False])
+
+    def numbers(self, author, undone):
+        return [number for number, edit in enumerate(self.edits) if edit[0] == author and edit[3] == undone]
+
+    def undo(self, author):
+        self.edits[self.numbers(author, undone=False)[-1]][3] = True
+
+    def redo(self, author):
+        self.edits[self.numbers(author, undone=True)[0]][3] = False
+
+
+async def test_two_viewers_undo_their_own_edits():
+    scene = boxes(1)
+    history, rng = History(to_dense(rom_of(scene).octree)), np.random.default_rng(7)
+    async with editing(scene) as (server, client), open_client(server.url) as viewer:
+        renderer, people = server.session.renderer, [client, viewer]
+        undone = 0
+        for _ in range(120):
+            author = int(rng.integers(2))
+            one, other = people[author], people[1 - author]
+            if server.session.control.controller != one.hello["viewer"]:
+                await other.request("release")
+                await one.take_control()
+            choice = rng.choice(["undo", "redo", "set", "set"])
+            if choice == "set":
+                low = rng.integers(0, 13, 3)
+                high, material = low + rng.integers(1, 4, 3), int(rng.integers(0, 4))
+                box = {"low": low.tolist(), "high": high.tolist()}
+                figures = await one.edit({"op": "fill", "box": box, "material": material})
+                after = history.cube()
+                after[tuple(map(slice, low, high))] = material
+                if (after != history.cube()).any():
+                    history.add(author, after)
+            elif not history.numbers(author, undone=choice == "redo"):
+                with pytest.raises(Refused, match="no edit to"):
+                    await one.edit({"op": choice})
+                continue
+            else:
+                (history.undo if choice == "undo" else history.redo)(author)
+                figures = await one.edit({"op": choice})
+                undone += 1
+            counts = [len(history.numbers(author, undone=state)) for state in (False, True)]
+            assert [figures["undo"], figures["redo"]] == counts
+            assert server.session.state()["scene"]["edits"] == {key: figures[key] for key in ("number", "undo", "redo")}
+            np.testing.assert_array_equal(to_dense(renderer.world.rom().octree), history.cube())
+        assert undone > 30
+        view = view_of(scene, (48, 32))
+        await show(one, view)
+        expected = render(renderer.world.rom(), view.camera, view.size, engine="model").colour
+        assert (await picture_after(other, one._requests) == expected).all()
 
 
 async def test_rays_find_edited_voxels():
@@ -142,7 +212,7 @@ async def test_what_is_wrong_changes_nothing(operation, problem):
         with pytest.raises(Refused, match=problem) as refused:
             await client.edit(operation)
         assert "\n" not in str(refused.value)
-        assert server.session.renderer.edits["number"] == 0
+        assert server.session.renderer.edits(None)["number"] == 0
         await client.edit(DIG)
 
 
@@ -169,7 +239,7 @@ async def test_edits_that_come_too_fast_are_refused():
             except Refused as refusal:
                 refused += "more than 1 edits per second" in str(refusal)
         assert refused >= 16
-        assert server.session.renderer.edits["number"] == 20 - refused
+        assert server.session.renderer.edits(None)["number"] == 20 - refused
 
 
 async def test_a_world_without_room_refuses_and_stays():
@@ -181,9 +251,39 @@ async def test_a_world_without_room_refuses_and_stays():
             for _ in range(200):
                 points = rng.integers(0, 16, (1, 3)).tolist()
                 await client.edit({"op": "set", "points": points, "materials": 1})
-        before = server.session.renderer.edits
+        before = server.session.renderer.edits(None)
         assert before["number"] > 0
         await client.edit({"op": "fill", "box": {"low": [0, 0, 0], "high": [16, 16, 16]}, "material": 0})
+
+
+@pytest.mark.parametrize("blocks", range(4, 16))
+async def test_an_edit_or_undo_without_room_changes_nothing(blocks):
+    scene, rng = boxes(1), np.random.default_rng(blocks)
+    async with editing(scene, ModelDevice(capacity=len(scene.words) + 8 * blocks)) as (server, client):
+        renderer, refused = server.session.renderer, 0
+        for _ in range(40):
+            world = renderer.world
+            before = (world.rom().octree.words, renderer.edits(client.hello["viewer"]), world.image) if world else None
+            points = rng.integers(0, 16, (1, 3)).tolist()
+            op = str(rng.choice(["undo", "redo", "set", "set"]))
+            try:
+                await client.edit({"op": op, "points": points, "materials": 3} if op == "set" else {"op": op})
+            except Refused as refusal:
+                refused += "does not fit" in str(refusal)
+                if before:
+                    words, edits, image = before
+                    np.testing.assert_array_equal(world.rom().octree.words, words)
+                    assert (renderer.edits(client.hello["viewer"]), len(world.image)) == (edits, len(image))
+                else:
+                    assert renderer.world is None
+            else:
+                device = renderer.device
+                root = renderer.world.live_roots[-1]
+                words = device.read_memory(0, len(renderer.world.image))
+                words[0] = words[root]
+                shown = to_dense(Octree(scene.depth, words))
+                np.testing.assert_array_equal(shown, to_dense(renderer.world.rom().octree))
+        assert refused > 0 or blocks > 9
 
 
 async def test_animations_are_not_edited():
@@ -222,7 +322,7 @@ async def test_a_device_that_fails_shows_the_voxels_before_and_then_both():
             await client.edit(DIG)
         assert device.octree() == before
         await client.edit({"op": "set", "points": [[1, 1, 2]], "materials": 1})
-        assert server.session.renderer.edits["number"] == 2
+        assert server.session.renderer.edits(None)["number"] == 2
         assert device.octree() != before
 
 

@@ -49,10 +49,10 @@ def test_edits_by_clicks(tmp_path):
 
         def until_edits(number):
             for _ in range(200):
-                if session.renderer.edits["number"] == number:
+                if session.renderer.edits(None)["number"] == number:
                     break
                 browser.draws()
-            assert session.renderer.edits["number"] == number
+            assert session.renderer.edits(None)["number"] == number
 
         browser.click("#dig")
         for number in (1, 2):
@@ -71,7 +71,7 @@ def test_edits_by_clicks(tmp_path):
         browser.mouse([place, (place[0] + 60, place[1] + 20)])  # a drag turns, and edits nothing
         browser.draws()
         assert browser.until(RESTS)
-        assert session.renderer.edits["number"] == 4
+        assert session.renderer.edits(None)["number"] == 4
         view, world = session.renderer.view, session.renderer.world
         width, height, data = browser.run(PIXELS)
         expected = render(world.rom(), view.camera, view.size, engine="model").colour

@@ -71,6 +71,14 @@ def real(metavar: str, *, above: float = -inf, below: float = inf, low: float = 
     return Kind(metavar, read_number, exact("real", above=above, below=below, low=low, high=high), "{:g}".format)
 
 
+def nearest(word: str, words: Iterable[str]) -> str:
+    """Return what an error says where one of the words may be meant."""
+    from difflib import get_close_matches  # noqa: PLC0415 - for what is wrong alone
+
+    near = get_close_matches(word, words, 1)
+    return f"; did you mean {near[0]}" if near else ""
+
+
 def one_of(choices: Sequence[str]) -> Kind:
     """Make the kind of a few names."""
 
@@ -78,7 +86,8 @@ def one_of(choices: Sequence[str]) -> Kind:
         for name in choices:
             if plain(name) == plain(text):
                 return name
-        raise ValueError(f"{text!r} is none of " + ", ".join(f'"{name}"' for name in choices))
+        listed = ", ".join(f'"{name}"' for name in choices)
+        raise ValueError(f"{text!r} is none of {listed}{nearest(text, choices)}")
 
     def check(name: str, value: object) -> str:
         return value if type(value) is str and value in choices else str(exact("choice", choices)(name, value))

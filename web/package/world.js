@@ -87,12 +87,12 @@ export class World {
 
   /** Back to the voxels before the last edit; false if there is none. */
   undo() {
-    return this.#voxrt.checked(this.#voxrt.wasm.vx_world_undo()) > 0;
+    return this.#moved(this.#voxrt.wasm.vx_world_undo());
   }
 
   /** Do again what was undone; false if there is nothing. */
   redo() {
-    return this.#voxrt.checked(this.#voxrt.wasm.vx_world_redo()) > 0;
+    return this.#moved(this.#voxrt.wasm.vx_world_redo());
   }
 
   /** Edits that can be undone, and those that can be done again. */
@@ -122,9 +122,7 @@ export class World {
    * octree of each live root. @returns {Patch} */
   commit() {
     const { wasm } = this.#voxrt;
-    const count = wasm.vx_world_commit();
-    if (count === NO_ROOM) throw this.#noRoom("the word of the root");
-    this.#voxrt.checked(count);
+    const count = this.#voxrt.checked(wasm.vx_world_commit());
     return {
       root: wasm.vx_patch_root(),
       rootWord: wasm.vx_patch_root_word() >>> 0,
@@ -194,7 +192,12 @@ export class World {
    * number} edit */
   #edit(kinds, arrays, edit) {
     const fits = this.#voxrt.guard(() => this.#voxrt.with(kinds, arrays, (...at) => this.#voxrt.checked(edit(...at))));
-    if (!fits) throw this.#noRoom("the result of the edit");
+    if (!fits) throw this.#noRoom();
+  }
+
+  /** @param {number} answer of a step */ #moved(answer) {
+    if (answer === NO_ROOM) throw this.#noRoom();
+    return this.#voxrt.checked(answer) > 0;
   }
 
   /** @param {number} id @param {number} [low] */ #checkMaterial(id, low = 0) {
@@ -202,9 +205,9 @@ export class World {
       throw new VoxrtError(`material must be ${low} … ${this.#materials.length - 1}, not ${id}`);
   }
 
-  /** @param {string} what */
-  #noRoom(what) {
-    return new VoxrtError(`${what} does not fit the ${this.#most.toLocaleString("en")} words of the world's memory`);
+  #noRoom() {
+    const most = this.#most.toLocaleString("en");
+    return new VoxrtError(`the result of the edit does not fit the ${most} words of the world's memory`);
   }
 }
 

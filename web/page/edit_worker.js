@@ -57,10 +57,11 @@ function patch() {
 
 /** Go back, or forth again, by a stroke. @param {Done[]} from @param {Done[]} to @param {() => boolean} step */
 function move(from, to, step) {
-  const last = from.pop();
+  const last = from.at(-1);
   if (!last) return { hit: true, box: NOWHERE, patch: null };
   let edits = 0;
-  while (edits < last.edits && step()) edits++;
+  while (edits < last.edits && step()) edits++; // the first one alone can find no room
+  from.pop();
   if (edits) to.push({ ...last, edits });
   return { hit: true, box: last.box, patch: patch() };
 }

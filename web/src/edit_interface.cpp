@@ -32,6 +32,8 @@ octree::World& begun() {
 
 octree::Place place(const int32_t* numbers) { return {numbers[0], numbers[1], numbers[2]}; }
 
+int moved(std::optional<bool> found) { return found ? *found : -2; }
+
 int change(const octree::Shape& shape, int material, int solid_only) {
     return guarded([&]() -> int {
         const auto id = static_cast<uint8_t>(material);
@@ -82,12 +84,12 @@ int vx_world_capsule(const int32_t* start, const int32_t* end, int radius, int m
     return change(octree::Capsule{place(start), place(end), radius}, material, solid_only);
 }
 
-/// 0 where there is no step.
+/// 0 where there is no step; -2 where there is no room for the word of the root: then nothing has changed.
 EXPORT(vx_world_undo) int vx_world_undo() {
-    return guarded([]() -> int { return begun().undo(); });
+    return guarded([] { return moved(begun().undo()); });
 }
 EXPORT(vx_world_redo) int vx_world_redo() {
-    return guarded([]() -> int { return begun().redo(); });
+    return guarded([] { return moved(begun().redo()); });
 }
 
 /// The first solid voxel on a ray: material, face (its axis; 3 where the ray begins in the voxel), x, y, z. Material 0:
@@ -102,13 +104,10 @@ EXPORT(vx_world_pick) const int32_t* vx_world_pick(const int32_t* origin, const 
 }
 
 /// Makes the voxels as they are a live root. Returns how many blocks memories elsewhere must write for it, and then the
-/// word of the root; or -2 where there is no room for that word.
+/// word of the root.
 EXPORT(vx_world_commit) int vx_world_commit() {
     return guarded([] {
-        std::optional<octree::Patch> made = begun().commit();
-        if (!made)
-            return -2;
-        patch = std::move(*made);
+        patch = begun().commit();
         return static_cast<int>(patch.addresses.size());
     });
 }
@@ -140,8 +139,8 @@ EXPORT(vx_world_figures) const double* vx_world_figures() {
     const int failed = guarded([] {
         const octree::World::Figures blocks = begun().figures();
         figures = {static_cast<double>(blocks.blocks), static_cast<double>(blocks.kept),
-                   static_cast<double>(blocks.free), static_cast<double>(begun().undo_steps()),
-                   static_cast<double>(begun().redo_steps())};
+                   static_cast<double>(blocks.free), static_cast<double>(begun().undo_steps(0)),
+                   static_cast<double>(begun().redo_steps(0))};
         return 0;
     });
     return failed != 0 ? nullptr : figures.data();

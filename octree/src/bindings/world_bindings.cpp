@@ -3,6 +3,7 @@
 #include "python_world.h"
 
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
 
 #include <algorithm>
 #include <array>
@@ -90,14 +91,17 @@ nb::object bind_materials_at(PythonWorld& world, const Rows<std::int64_t, 3>& po
     return to_numpy(std::move(materials), {count});
 }
 
-// None where there is no room for the root.
 nb::object bind_commit(PythonWorld& world) {
-    std::optional<Patch> patch = with(world, [](World& one) { return one.commit(); });
-    if (!patch)
-        return nb::none();
-    const std::size_t count = patch->addresses.size();
-    return patch_type(patch->root, patch->root_word, to_numpy(std::move(patch->addresses), {count}),
-                      rows_to_numpy(std::move(patch->blocks)));
+    Patch patch = with(world, [](World& one) { return one.commit(); });
+    const std::size_t count = patch.addresses.size();
+    return patch_type(patch.root, patch.root_word, to_numpy(std::move(patch.addresses), {count}),
+                      rows_to_numpy(std::move(patch.blocks)));
+}
+
+nb::object bind_steps(PythonWorld& world, std::uint32_t author) {
+    const auto [undo, redo] =
+        with(world, [=](World& one) { return std::pair(one.undo_steps(author), one.redo_steps(author)); });
+    return nb::make_tuple(undo, redo);
 }
 
 nb::object bind_live_roots(PythonWorld& world) {
@@ -150,8 +154,11 @@ void bind_world(nb::module_& m) {
         .def("materials_at", &bind_materials_at, "points"_a.noconvert())
         .def("undo", [](PythonWorld& world) { return with(world, [](World& one) { return one.undo(); }); })
         .def("redo", [](PythonWorld& world) { return with(world, [](World& one) { return one.redo(); }); })
-        .def("undo_steps", [](PythonWorld& world) { return with(world, [](World& one) { return one.undo_steps(); }); })
-        .def("redo_steps", [](PythonWorld& world) { return with(world, [](World& one) { return one.redo_steps(); }); })
+        .def("steps", &bind_steps, "author"_a)
+        .def(
+            "set_author",
+            [](PythonWorld& world, std::uint32_t author) { with(world, [=](World& one) { one.set_author(author); }); },
+            "author"_a)
         .def("commit", &bind_commit)
         .def("live_roots", &bind_live_roots)
         .def(

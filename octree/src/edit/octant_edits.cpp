@@ -3,6 +3,8 @@
 #include <voxrt/voxelize/work/interrupt.h>
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include <unordered_map>
 
 namespace voxrt::octree {
@@ -97,6 +99,30 @@ private:
     std::unordered_map<std::uint64_t, Word> results_;
 };
 
+class Changes {
+public:
+    explicit Changes(CountedBlocks& blocks) : blocks_(blocks) {}
+
+    Word node(Word word, Word before, Word after) {
+        if (before == after)
+            return word;
+        if (word == before || word == after || (is_leaf(before) && is_leaf(after)))
+            return after;
+        const std::array<Word, 3> key{word, before, after};
+        if (const auto entry = results_.find(key); entry != results_.end())
+            return entry->second;
+        const Block old = blocks_.children(before), made = blocks_.children(after);
+        const Word result = change_children(
+            blocks_, word, [&](Word child, unsigned octant) { return node(child, old[octant], made[octant]); });
+        results_.emplace(key, result);
+        return result;
+    }
+
+private:
+    CountedBlocks& blocks_;
+    std::map<std::array<Word, 3>, Word> results_;
+};
+
 } // namespace
 
 Word set_voxels(CountedBlocks& blocks, Word root, unsigned depth, const std::vector<VoxelEdit>& edits) {
@@ -113,6 +139,10 @@ Word paint_shape(CountedBlocks& blocks, Word root, unsigned depth, const Shape& 
 
 Word overlay(CountedBlocks& blocks, Word root, const BlockPool& pool, Node piece) {
     return Overlay(blocks, pool).node(root, piece);
+}
+
+Word with_changes(CountedBlocks& blocks, Word root, Word before, Word after) {
+    return Changes(blocks).node(root, before, after);
 }
 
 } // namespace voxrt::octree

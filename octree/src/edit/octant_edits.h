@@ -32,4 +32,8 @@ Word paint_shape(CountedBlocks& blocks, Word root, unsigned depth, const Shape& 
 /// pairs of blocks that lie in one place, each once.
 Word overlay(CountedBlocks& blocks, Word root, const BlockPool& pool, Node piece);
 
+/// Gives the voxels in which the octrees `before` and `after` differ what they have in `after`. Cost: the blocks in
+/// which they differ, each once per block of the octree that lies there.
+Word with_changes(CountedBlocks& blocks, Word root, Word before, Word after);
+
 } // namespace voxrt::octree

@@ -12,6 +12,7 @@
 #include <numeric>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace voxrt::octree {
 namespace {
@@ -39,9 +40,15 @@ Place turned_corner(const Place& size, std::int64_t side, unsigned quarters) {
     }
 }
 
+struct Settling {
+    CountedBlocks& blocks;
+    ~Settling() { blocks.settle(); }
+};
+
 } // namespace
 
-World::World(const Memory& memory, const WorldLimits& limits) : depth_(memory.depth), limits_(limits) {
+World::World(const Memory& memory, const WorldLimits& limits)
+    : depth_(memory.depth), limits_(limits), history_(blocks_, limits.undo_steps) {
     const VerifiedMemory verified(memory);
     Words shared;
     if (!blocks_.load(memory)) {
@@ -101,20 +108,6 @@ World::Copied World::copy(const Box& box) const {
     return {breadth_first_words(pool, node), depth};
 }
 
-bool World::undo() {
-    if (undo_.empty())
-        return false;
-    move_root(undo_, redo_);
-    return true;
-}
-
-bool World::redo() {
-    if (redo_.empty())
-        return false;
-    move_root(redo_, undo_);
-    return true;
-}
-
 VerifiedMemory World::memory() const { return VerifiedMemory::trusted(blocks_.stored().memory(depth_, root_)); }
 
 Words World::words() const {
@@ -137,13 +130,11 @@ std::vector<Word> World::written() const {
     return found;
 }
 
-std::optional<Patch> World::commit() {
+Patch World::commit() {
     free_ended();
     const LiveRoots::Root newest = roots_->newest();
     if (newest.word == root_)
         return Patch{newest.address, newest.word, {}, {}};
-    if (free_places_.empty() && !add_places())
-        return std::nullopt;
     Patch patch{free_places_.back(), root_, {}, {}};
     try {
         std::vector<Word> open{root_};
@@ -172,29 +163,12 @@ std::optional<Patch> World::commit() {
     return patch;
 }
 
-// Room for the words of eight more roots; steps of undo are forgotten where that takes theirs.
-bool World::add_places() {
-    tables_.reserve(tables_.size() + 1);
-    free_places_.reserve(8 * (tables_.size() + 1)); // for free_ended(), too
-    for (;;)
-        try {
-            tables_.push_back(blocks_.add_table());
-            for (std::size_t place = tables_.back() + 8; place-- > tables_.back();)
-                free_places_.push_back(place);
-            return true;
-        } catch (const NoRoom&) {
-            if (undo_.empty() && redo_.empty())
-                return false;
-            forget_steps();
-        }
-}
-
 void World::check() {
     free_ended();
     std::vector<std::uint32_t> counts(blocks_.size(), 0);
     std::vector<Word> open = needed_roots();
-    open.insert(open.end(), undo_.begin(), undo_.end());
-    open.insert(open.end(), redo_.begin(), redo_.end());
+    const std::vector<Word> kept = history_.roots();
+    open.insert(open.end(), kept.begin(), kept.end());
     while (!open.empty()) {
         const Word word = open.back();
         open.pop_back();
@@ -226,7 +200,7 @@ World::Figures World::figures() {
     return {blocks, blocks_.used() - blocks, blocks_.size() - blocks_.used()};
 }
 
-// None where there is no room: then nothing is left of the edit.
+// None where there is no room for what an edit or a step makes: then nothing is left of it.
 template <typename Edit> std::optional<Word> World::attempt(Edit edit) {
     try {
         return edit();
@@ -238,8 +212,13 @@ template <typename Edit> std::optional<Word> World::attempt(Edit edit) {
 
 // The edit, with the room of the steps of undo where it fits without them.
 template <typename Edit> std::optional<Word> World::fitting(Edit edit) {
-    const std::optional<Word> root = attempt(edit);
-    if (root || (undo_.empty() && redo_.empty()))
+    const auto with_place = [&] {
+        const Word root = edit();
+        reserve_place(root);
+        return root;
+    };
+    const std::optional<Word> root = attempt(with_place);
+    if (root || history_.empty())
         return root;
     bool fits = false;
     {
@@ -257,32 +236,57 @@ template <typename Edit> std::optional<Word> World::fitting(Edit edit) {
             std::vector<Word> roots = needed_roots();
             roots.push_back(*beyond);
             const std::vector<std::uint8_t> needed = reached(roots);
-            fits = std::accumulate(needed.begin(), needed.end(), tables_.size()) <= unlimited.limit;
+            const std::size_t tables = tables_.size() + (free_places_.empty() ? 1 : 0);
+            fits = std::accumulate(needed.begin(), needed.end(), tables) <= unlimited.limit;
         }
     }
     if (!fits)
         return std::nullopt;
-    forget_steps();
-    return attempt(edit);
+    history_.forget();
+    return attempt(with_place);
 }
 
 template <typename Edit> bool World::change(Edit edit) {
     free_ended();
-    struct Settling {
-        CountedBlocks& blocks;
-        ~Settling() { blocks.settle(); }
-    } settling{blocks_};
+    const Settling settling{blocks_};
     const std::optional<Word> root = fitting(edit);
     if (!root || *root == root_)
         return root.has_value();
-    undo_.push_back(root_);
-    root_ = *root;
-    blocks_.retain(root_);
-    for (; !redo_.empty(); redo_.pop_back())
-        blocks_.release(redo_.back());
-    for (; undo_.size() > limits_.undo_steps; undo_.pop_front())
-        blocks_.release(undo_.front());
+    blocks_.retain(*root);
+    history_.add(author_, root_, *root);
+    blocks_.release(std::exchange(root_, *root));
     return true;
+}
+
+std::optional<bool> World::turn(bool undone) {
+    free_ended();
+    const std::optional<std::size_t> number = history_.next(author_, undone);
+    if (!number)
+        return false;
+    const Settling settling{blocks_};
+    std::vector<Word> results;
+    const std::optional<Word> root = attempt([&] {
+        results = history_.turned(*number);
+        reserve_place(results.back());
+        return results.back();
+    });
+    if (!root)
+        return std::nullopt;
+    blocks_.retain(*root);
+    history_.turn(*number, results);
+    blocks_.release(std::exchange(root_, *root));
+    return true;
+}
+
+// Makes room for the words of eight more roots, if that of the next commit has none.
+void World::reserve_place(Word root) {
+    if (root == root_ || !free_places_.empty())
+        return;
+    tables_.reserve(tables_.size() + 1);
+    free_places_.reserve(8 * (tables_.size() + 1)); // for free_ended(), too
+    tables_.push_back(blocks_.add_table());
+    for (std::size_t place = tables_.back() + 8; place-- > tables_.back();)
+        free_places_.push_back(place);
 }
 
 std::vector<std::uint8_t> World::reached(const std::vector<Word>& roots) const {
@@ -312,24 +316,8 @@ void World::free_ended() {
     for (const LiveRoots::Root& root : roots_->take_ended()) {
         blocks_.release(root.word);
         if (root.address != 0)
-            free_places_.push_back(root.address); // commit() made room for it
+            free_places_.push_back(root.address); // reserve_place() made room for it
     }
-}
-
-void World::forget_steps() noexcept {
-    for (const Word word : undo_)
-        blocks_.release(word);
-    for (const Word word : redo_)
-        blocks_.release(word);
-    undo_.clear();
-    redo_.clear();
-}
-
-// The current root becomes the last of `to`, and the last of `from` the current one.
-void World::move_root(std::deque<Word>& from, std::deque<Word>& to) {
-    to.push_back(root_);
-    root_ = from.back();
-    from.pop_back();
 }
 
 } // namespace voxrt::octree

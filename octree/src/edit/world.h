@@ -16,10 +16,10 @@
 
 #include "../words/verify.h"
 #include "counted_blocks.h"
+#include "edit_history.h"
 #include "live_roots.h"
 #include "shapes.h"
 
-#include <deque>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -70,8 +70,9 @@ public:
 
     unsigned depth() const { return depth_; }
 
-    /// Edits: false where the memory has no room for the result. Then nothing changes. Steps of undo take room too, and
-    /// all of them are forgotten where an edit needs it. What is outside of the world is left out.
+    /// Edits: false where the memory has no room for the result, or for the word of its root, which commit() writes.
+    /// Then nothing changes. Steps of undo take room too, and all of them are forgotten where an edit needs it. What is
+    /// outside of the world is left out.
     ///
     /// `points`: 3 * count coordinates, 0 ... 2**depth - 1. Where a voxel repeats, the last counts.
     [[nodiscard]] bool set(const std::int64_t* points, const std::uint8_t* materials, std::size_t count);
@@ -91,19 +92,23 @@ public:
     };
     Copied copy(const Box& box) const;
 
-    /// Back to what the last edit found, and forth again. False where there is no step. An edit ends what redo() has.
-    bool undo();
-    bool redo();
-    std::size_t undo_steps() const { return undo_.size(); }
-    std::size_t redo_steps() const { return redo_.size(); }
+    /// Edits, undo() and redo() are by this author from now on.
+    void set_author(std::uint32_t author) { author_ = author; }
+
+    /// Takes the last edit of the author back, and makes it again. False where there is no step. An edit ends what
+    /// redo() has of its author. Edits of others stay: see edit_history.h. None where the memory has no room for the
+    /// result, or for the word of its root; then nothing changes.
+    std::optional<bool> undo() { return turn(false); }
+    std::optional<bool> redo() { return turn(true); }
+    std::size_t undo_steps(std::uint32_t author) const { return history_.count(author, false); }
+    std::size_t redo_steps(std::uint32_t author) const { return history_.count(author, true); }
 
     /// The octree as it is now; words() has its own memory, as build() makes it of the same voxels.
     VerifiedMemory memory() const;
     Words words() const;
 
-    /// Makes the current octree a live root. What the patch writes has room in a memory of the size of image(). None
-    /// where there is no room for the word of the root.
-    std::optional<Patch> commit();
+    /// Makes the current octree a live root. What the patch writes has room in a memory of the size of image().
+    Patch commit();
     std::vector<LiveRoots::Root> live_roots() const { return roots_->roots(false); }
 
     /// From any thread: ends a live root other than the newest; makes a view of one. They throw std::invalid_argument
@@ -135,19 +140,19 @@ private:
     template <typename Edit> std::optional<Word> fitting(Edit edit);
     std::vector<std::uint8_t> reached(const std::vector<Word>& roots) const;
     std::vector<Word> needed_roots() const;
-    bool add_places();
+    std::optional<bool> turn(bool undone);
+    void reserve_place(Word root);
     void free_ended();
-    void forget_steps() noexcept;
-    void move_root(std::deque<Word>& from, std::deque<Word>& to);
 
     unsigned depth_;
     WorldLimits limits_;
     CountedBlocks blocks_;
     Word root_ = kEmpty;
-    std::deque<Word> undo_, redo_; // roots; the next step is the last
+    EditHistory history_;
+    std::uint32_t author_ = 0;
     std::shared_ptr<LiveRoots> roots_ = std::make_shared<LiveRoots>();
     std::vector<std::size_t> tables_;      // addresses of blocks of root words
-    std::vector<std::size_t> free_places_; // for root words
+    std::vector<std::size_t> free_places_; // for root words; there is one while the current root is not committed
 };
 
 } // namespace voxrt::octree

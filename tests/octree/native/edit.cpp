@@ -19,7 +19,7 @@ int main() {
                 good = false;
             };
             Editing editing([&](std::uint64_t count) { return random() % count; }, fail, depth,
-                            {memory_size(blocks), 9});
+                            {memory_size(blocks), 3 * (depth - 1)});
             for (int step = 0; step < 400; ++step)
                 editing.step();
             editing.finish();

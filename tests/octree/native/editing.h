@@ -42,12 +42,14 @@ public:
     Editing(Choose choose, Fail fail, unsigned depth, const WorldLimits& limits)
         : choose_(std::move(choose)), fail_(std::move(fail)), depth_(depth), side_(std::int64_t{1} << depth),
           cells_(static_cast<std::size_t>(side_ * side_ * side_)), world_(world_of(cells_, depth, limits)),
-          device_(world_->image()) {
+          device_(world_->image()), most_steps_(limits.undo_steps), begin_(cells_) {
         live_[0] = cells_;
     }
 
     void step() {
-        const std::size_t steps = world_->undo_steps();
+        const Cells before = cells_;
+        author_ = static_cast<std::uint32_t>(choose_(kAuthors));
+        world_->set_author(author_);
         refused_ = false;
         switch (choose_(8)) {
         case 0:
@@ -64,19 +66,21 @@ public:
             paste();
             break;
         case 5:
-            if (world_->undo())
-                cells_ = cells_of(world_->memory().memory());
+            turn(false);
             break;
         case 6:
-            if (world_->redo())
-                cells_ = cells_of(world_->memory().memory());
+            turn(true);
             break;
         default:
             commit();
         }
         world_->check();
-        if (refused_ && world_->undo_steps() != steps)
-            fail_("an edit that was refused has forgotten steps of undo");
+        if (!turned_ && cells_ != before)
+            remember(before);
+        turned_ = false;
+        for (std::uint32_t author = 0; author < kAuthors; ++author)
+            if (world_->undo_steps(author) != count(author, false) || world_->redo_steps(author) != count(author, true))
+                fail_("the steps of undo are not those of the edits");
         if (world_->words() != words_of(cells_, depth_))
             fail_("the words are not those of a build");
     }
@@ -90,6 +94,58 @@ public:
     }
 
 private:
+    static constexpr std::uint32_t kAuthors = 3;
+    struct Made {
+        std::uint32_t author;
+        Cells before, after;
+        bool undone;
+    };
+
+    std::size_t count(std::uint32_t author, bool undone) const {
+        return static_cast<std::size_t>(std::count_if(history_.begin(), history_.end(), [&](const Made& one) {
+            return one.author == author && one.undone == undone;
+        }));
+    }
+    static void make_again(Cells& cells, const Made& one) {
+        for (std::size_t i = 0; i < cells.size() && !one.undone; ++i)
+            if (one.before[i] != one.after[i])
+                cells[i] = one.after[i];
+    }
+
+    void remember(const Cells& before) {
+        std::erase_if(history_, [&](const Made& one) { return one.undone && one.author == author_; });
+        history_.push_back({author_, before, cells_, false});
+        std::size_t steps = 0;
+        for (std::uint32_t author = 0; author < kAuthors; ++author)
+            steps += world_->undo_steps(author) + world_->redo_steps(author);
+        const bool forgotten = steps == std::min<std::size_t>(1, most_steps_); // the edit needed the room of the others
+        for (const std::size_t most = forgotten ? steps : most_steps_; history_.size() > most;) {
+            make_again(begin_, history_.front());
+            history_.erase(history_.begin());
+        }
+        if (forgotten)
+            begin_ = before;
+    }
+
+    void turn(bool undone) {
+        turned_ = true;
+        const std::optional<bool> found = undone ? world_->redo() : world_->undo();
+        refused_ = !found;
+        if (refused_)
+            return;
+        const auto fits = [&](const Made& one) { return one.author == author_ && one.undone == undone; };
+        const auto first = std::find_if(history_.begin(), history_.end(), fits);
+        const auto last = std::find_if(history_.rbegin(), history_.rend(), fits);
+        if (*found != (first != history_.end()))
+            fail_("there are other steps of undo");
+        if (!*found)
+            return;
+        (undone ? *first : *last).undone = !undone;
+        cells_ = begin_;
+        for (const Made& one : history_)
+            make_again(cells_, one);
+    }
+
     std::int64_t any(std::int64_t low, std::int64_t high) {
         return low + static_cast<std::int64_t>(choose_(static_cast<std::uint64_t>(high - low)));
     }
@@ -172,26 +228,24 @@ private:
     }
 
     void commit() {
-        const std::optional<Patch> patch = world_->commit();
-        if (!patch)
-            return;
+        const Patch patch = world_->commit();
         device_.resize(std::max(device_.size(), world_->image().size()), kEmpty);
-        for (std::size_t i = 0; i < patch->blocks.size(); ++i)
-            std::copy_n(patch->blocks[i].data(), 8, &device_[patch->addresses[i]]);
-        if (patch->root != 0)
-            device_[patch->root] = patch->root_word;
+        for (std::size_t i = 0; i < patch.blocks.size(); ++i)
+            std::copy_n(patch.blocks[i].data(), 8, &device_[patch.addresses[i]]);
+        if (patch.root != 0)
+            device_[patch.root] = patch.root_word;
         const Words image = world_->image();
         for (const Word address : world_->written())
             if (!std::equal(&image[address], &image[address] + 8, &device_[address]))
                 fail_("a patched memory has other blocks");
-        live_[patch->root] = cells_;
-        const std::shared_ptr<const View> view(new View(world_->view(patch->root)));
+        live_[patch.root] = cells_;
+        const std::shared_ptr<const View> view(new View(world_->view(patch.root)));
         readers_.emplace_back([this, view, cells = cells_] {
             if (cells_of(view->memory().memory()) != cells)
                 wrong_ = true;
         });
         for (const LiveRoots::Root& root : world_->live_roots())
-            if (root.address != patch->root && choose_(2) == 0) {
+            if (root.address != patch.root && choose_(2) == 0) {
                 world_->release(root.address);
                 live_.erase(root.address);
             }
@@ -214,7 +268,11 @@ private:
     std::map<std::size_t, Cells> live_;
     std::vector<std::thread> readers_;
     std::atomic<bool> wrong_{false};
-    bool refused_ = false;
+    bool refused_ = false, turned_ = false;
+    std::uint32_t author_ = 0;
+    std::size_t most_steps_;
+    Cells begin_; // before the first edit of history_
+    std::vector<Made> history_;
 };
 
 } // namespace editing

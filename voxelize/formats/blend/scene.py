@@ -11,7 +11,7 @@ import numpy as np
 from voxrt.voxelize.collider_shapes import Collider, collider_around
 from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
 from voxrt.voxelize.colour.srgb import srgb_from_linear
-from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.errors import AssetError, DoesNotFitError
 from voxrt.voxelize.formats.authored_properties import PREFIX, ObjectProperties, checked_properties
 from voxrt.voxelize.formats.blend.axes import placed
 from voxrt.voxelize.formats.blend.colliders import rigid_collider
@@ -162,17 +162,21 @@ class SceneReader:
     def again(self, one: Any) -> tuple[SceneObject, tuple[Material, ...]] | None:
         """Read an evaluated object that was edited, and all materials so far.
 
-        None where it cannot be read by itself: it shows textures or colour attributes, or nothing.
+        None where it cannot be read by itself: it shows textures or colour attributes, or nothing, or there are more
+        than 255 materials, with those that no object has any more.
         """
         if one.type != "MESH":
             return None
         self._arrays.pop(one.data.as_pointer(), None)
         for key in [key for key in self._rows if key[0] == one.data.as_pointer()]:
             del self._rows[key]
-        thing = self._placed(_Instance(one, one.matrix_world))
-        if thing is None or self._loaded[thing.mesh].appearance is not None:
+        try:
+            thing = self._placed(_Instance(one, one.matrix_world))
+            if thing is None or self._loaded[thing.mesh].appearance is not None:
+                return None
+            mesh = assign_materials([self._loaded[thing.mesh]], self._table, self._log, self._opaque_from)[0]
+        except DoesNotFitError:
             return None
-        mesh = assign_materials([self._loaded[thing.mesh]], self._table, self._log, self._opaque_from)[0]
         if not len(mesh.triangles):
             return None
         return self._object(thing.name, thing, mesh), self._table.materials()

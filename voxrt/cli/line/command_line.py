@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from voxrt.cli.terminal.errors import UsageError
 from voxrt.options.commands import COMMANDS
+from voxrt.options.kinds import nearest
 from voxrt.options.option import ARGUMENTS, OptionConflictError, compose, options_of, spell_options
 
 if TYPE_CHECKING:
@@ -41,7 +42,7 @@ def find_command(name: str, tasks: Iterable[str] = ()) -> str:
         return name
     names = (*COMMANDS, *tasks)
     kind = "command or task" if tasks else "command"
-    raise UsageError(f"there is no {kind} {name!r}{_perhaps(name, names)}; name one of {', '.join(names)}")
+    raise UsageError(f"there is no {kind} {name!r}{nearest(name, names)}; name one of {', '.join(names)}")
 
 
 def asks_for_help(arguments: Sequence[str]) -> bool:
@@ -91,7 +92,8 @@ def _value(name: str, option: Option, texts: list[str]) -> object:
     try:
         values = [option.kind.read(text) for text in texts]
     except ValueError as error:
-        raise UsageError(f"{flag}: {error}") from error
+        named = option.group == ARGUMENTS and option.kind.choices  # "check|report" would say it twice
+        raise UsageError(str(error) if named else f"{flag}: {error}") from error
     try:
         return option.kind.check(flag, tuple(values) if option.kind.many else values[-1])
     except (ValueError, TypeError) as error:
@@ -121,7 +123,7 @@ def _split(arguments: Sequence[str], options: dict[str, Option]) -> tuple[dict[s
             continue
         flag, joined, value = word.partition("=") if word.startswith("--") else (word[:2], word[2:], word[2:])
         if flag not in names:
-            raise UsageError(f"there is no option {flag}{_perhaps(flag, names)}")
+            raise UsageError(f"there is no option {flag}{nearest(flag, names)}")
         option = options[names[flag]]
         if option.kind.is_flag and joined:
             if word.startswith("--"):
@@ -136,13 +138,6 @@ def _split(arguments: Sequence[str], options: dict[str, Option]) -> tuple[dict[s
             value = rest.pop(0)
         texts[names[flag]].append(value)
     return texts, words
-
-
-def _perhaps(word: str, words: Iterable[str]) -> str:
-    from difflib import get_close_matches  # noqa: PLC0415 - for what is wrong alone
-
-    near = get_close_matches(word, words, 1)
-    return f"; did you mean {near[0]}" if near else ""
 
 
 def _is_asset(name: str) -> bool:
