@@ -20,7 +20,9 @@ inline constexpr int kBrickVoxels = 512;
 inline constexpr int kTileSide = 64; // columns per side of a tile
 
 inline bool is_full(const Slices& s) { return (s[0] & s[1] & s[2] & s[3] & s[4] & s[5] & s[6] & s[7]) == ~uint64_t{0}; }
-inline bool is_empty(const Slices& s) { return (s[0] | s[1] | s[2] | s[3] | s[4] | s[5] | s[6] | s[7]) == 0; }
+/// The columns with a voxel.
+inline uint64_t any_of(const Slices& s) { return s[0] | s[1] | s[2] | s[3] | s[4] | s[5] | s[6] | s[7]; }
+inline bool is_empty(const Slices& s) { return any_of(s) == 0; }
 
 /// The voxels of `a` that are not in `b`.
 inline Slices without(const Slices& a, const Slices& b) {

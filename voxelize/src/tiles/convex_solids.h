@@ -29,17 +29,16 @@ struct AxisBox {
         return span;
     }
 
-    /// How much of a voxel it fills.
-    double volume(int x, int y, int z) const {
+    /// How much of a voxel it fills: exact, in units of the lattice, and in voxels.
+    int64_t volume_in_units(int x, int y, int z) const {
         const int at[3] = {x, y, z};
-        double product = 1;
-        for (int axis = 0; axis < 3; ++axis) {
-            const int64_t low = std::max(min[axis], at[axis] * kUnit),
-                          high = std::min(max[axis], (at[axis] + 1) * kUnit);
-            product *= static_cast<double>(std::max<int64_t>(high - low, 0)) / kUnit;
-        }
+        int64_t product = 1;
+        for (int axis = 0; axis < 3; ++axis)
+            product *= std::max<int64_t>(
+                std::min(max[axis], (at[axis] + 1) * kUnit) - std::max(min[axis], at[axis] * kUnit), 0);
         return product;
     }
+    double volume(int x, int y, int z) const { return double(volume_in_units(x, y, z)) / (kUnit * kUnit * kUnit); }
 
     /// The voxels of a column whose centres are within.
     ColumnSpan centres(int x, int y, int /*top*/) const {

@@ -10,9 +10,17 @@
 #include "../rules/voxel_volume.h"
 #include "tile_voxels.h"
 
+#include <cmath>
 #include <vector>
 
 namespace voxrt::voxelize {
+
+/// Voxels of a brick whose volumes add up to about a half.
+struct HalfDoubt {
+    size_t brick; // among those listed
+    int column, k;
+    Slices voxels;
+};
 
 class RuleTile {
 public:
@@ -30,12 +38,19 @@ public:
             sum_rows_[slot] = kNone;
         summed_.clear();
         sums_.clear();
+        summands_.clear();
+        last_summands_.clear();
+        triangles_ = 0;
     }
 
-    /// What is added from now on belongs to an object, and has its rule.
-    void begin(uint32_t object, Rule rule) {
+    /// What is added from now on belongs to a part of an object, and has its rule. `triangles`: that the tile lists of
+    /// it.
+    void begin(uint32_t part, uint32_t object, Rule rule, size_t triangles) {
+        part_ = part;
         object_ = object;
         rule_of_part_ = rule;
+        if (rule == Rule::half)
+            triangles_ += double(triangles);
     }
     bool fills_all() const { return rule_of_part_ == Rule::touch; }
     bool asks_for_volumes() const { return rule_of_part_ == Rule::half; }
@@ -63,8 +78,11 @@ public:
         if (row == kNone) {
             row = uint32_t(sums_.size());
             sums_.emplace_back();
+            last_summands_.push_back(kNone);
             summed_.push_back(slot);
         }
+        summands_.push_back({voxels, part_, last_summands_[row]});
+        last_summands_[row] = uint32_t(summands_.size() - 1);
         for (int z = 0; z < kBrickSide; ++z)
             for (uint64_t left = voxels[z]; left != 0; left &= left - 1) {
                 const auto place = size_t(z * 64 + std::countr_zero(left));
@@ -72,8 +90,10 @@ public:
             }
     }
 
-    /// Appends the bricks of the tile, and who owns their surface.
-    void list(const TileVoxels& tile, std::vector<RuleBrick>& bricks, std::vector<OwnedSurface>& owned) const {
+    /// Appends the bricks of the tile, and who owns their surface. Returns the voxels that volumes do not decide.
+    std::vector<HalfDoubt> list(const TileVoxels& tile, std::vector<RuleBrick>& bricks,
+                                std::vector<OwnedSurface>& owned) const {
+        std::vector<HalfDoubt> doubts;
         for (int column = 0; column < kTileColumns; ++column) {
             if (!tile.column_used(column))
                 continue;
@@ -85,13 +105,34 @@ public:
                 Slices filled = filled_.mask_of(*filled_.slots(column, k));
                 const size_t place = size_t(column) * size_t(tile.height()) + size_t(k);
                 if (!summed_.empty() && sum_rows_[place] != kNone)
-                    add_halves(filled, sums_[sum_rows_[place]]);
+                    if (const Slices near = add_halves(filled, sums_[sum_rows_[place]]); !is_empty(near))
+                        doubts.push_back({bricks.size(), column, k, near});
                 for (int z = 0; z < kBrickSide; ++z)
                     filled[z] &= touched[z];
                 bricks.push_back({code_of(column, k), touched, filled, surface_.mask_of(surface)});
             }
         }
         owned.insert(owned.end(), owned_.begin(), owned_.end());
+        return doubts;
+    }
+
+    /// How far a sum of volumes may be from the true one; 0 where all are of boxes, which have no rounding.
+    ///
+    /// u = 2^-53, N triangles, coordinates below 2^8 voxels (wider triangles are cut in TwoDoubles). Where an edge
+    /// meets a plane is found within 6 * 2^8 u along the plane; three cuts, one after another, give corners within
+    /// d = 2^-40.8 of those of the true piece. In a cell a piece has a perimeter below 6 and an area below 1.5, so the
+    /// area seen from above is wrong by 6 d at most and the volume by 8 d, once per triangle and column: pieces of one
+    /// column share the corners where planes between its voxels cut. Rounding in the cell is a few u per piece, of at
+    /// most 2^16. Whole cells below a plane have an error of 32 u. All that is below 2^-32 per triangle. Sums of N
+    /// numbers up to N in size add N^2 u, and those along 2^16 voxels of a column N 2^-37.
+    double error_bound() const { return triangles_ * 0x1p-31 + triangles_ * triangles_ * 0x1p-52; }
+
+    /// Calls take(part) with the parts whose volumes a voxel of a brick sums.
+    template <class Take> void for_each_summand(const HalfDoubt& brick, int z, int bit, Take take) const {
+        const size_t slot = size_t(brick.column) * size_t(filled_.height()) + size_t(brick.k);
+        for (uint32_t i = last_summands_[sum_rows_[slot]]; i != kNone; i = summands_[i].before)
+            if (summands_[i].voxels[size_t(z)] >> bit & 1)
+                take(summands_[i].part);
     }
 
     /// Appends the volumes of the last object, and forgets it.
@@ -114,14 +155,31 @@ public:
 
 private:
     static constexpr uint8_t kAny = 1; // a material: all voxels here have the same
-    // Sums are exact to 2^-41. Volumes whose corners are on the lattice of 1/4096 voxel are 1/2, or differ by 2^-39.
-    static constexpr double kHalf = 0.5 - 0x1p-40;
 
-    static void add_halves(Slices& filled, const std::array<double, kBrickVoxels>& volumes) {
+    /// Fills the voxels whose sums are above a half. Returns those nearer to it than the error.
+    Slices add_halves(Slices& filled, const std::array<double, kBrickVoxels>& volumes) const {
+        const double error = error_bound();
+        double nearest = 1;
         for (int z = 0; z < kBrickSide; ++z)
+            for (int bit = 0; bit < 64; ++bit) {
+                const double over = volumes[size_t(z * 64 + bit)] - 0.5;
+                filled[z] |= uint64_t{over >= error} << bit;
+                nearest = std::min(nearest, std::abs(over));
+            }
+        Slices doubtful{};
+        for (int z = 0; nearest < error && z < kBrickSide; ++z) {
             for (int bit = 0; bit < 64; ++bit)
-                filled[z] |= uint64_t{volumes[size_t(z * 64 + bit)] >= kHalf} << bit;
+                doubtful[z] |= uint64_t{std::abs(volumes[size_t(z * 64 + bit)] - 0.5) < error} << bit;
+            doubtful[z] &= ~filled[z];
+        }
+        return doubtful;
     }
+
+    /// What one part adds to the sums of a brick.
+    struct Summand {
+        Slices voxels;
+        uint32_t part, before; // of the brick
+    };
 
     uint64_t code_of(int column, int k) const {
         return morton(uint32_t(tile_x_ * kTileBricks + column % kTileBricks),
@@ -132,9 +190,12 @@ private:
     std::vector<uint32_t> sum_rows_; // by slot: where the sums of volumes stand
     std::vector<size_t> summed_;     // the slots that have some
     std::vector<std::array<double, kBrickVoxels>> sums_;
-    uint32_t object_ = 0;
+    std::vector<Summand> summands_;
+    std::vector<uint32_t> last_summands_; // by row of sums_
+    double triangles_ = 0;                // of parts that ask for volumes
+    uint32_t part_ = 0, object_ = 0;
     Rule rule_of_part_ = Rule::touch;
-    int tile_x_ = 0, tile_y_ = 0;
+    int tile_x_ = 0, tile_y_ = 0; // in tiles
     std::vector<OwnedSurface> owned_;
 };
 

@@ -1,0 +1,145 @@
+// Decides by fractions in which voxels of a tile the volumes add up to a half, where floating point does not.
+#pragma once
+
+#include "../coverage/exact_volume.h"
+#include "../faces/exact_predicates.h"
+#include "rule_tile.h"
+
+#include <numeric>
+
+namespace voxrt::voxelize {
+
+/// Triangles of the solids of a tile, by column.
+class TileSolids {
+public:
+    /// `columns`: by column of the tile whose lowest one is (x, y), whether it is asked for.
+    TileSolids(const std::vector<bool>& columns, int x, int y) : columns_(columns), x_(x), y_(y) {}
+
+    void add(uint32_t part, const SolidTriangle& t) {
+        const auto [x_low, x_high] = span_of(t, 0);
+        const auto [y_low, y_high] = span_of(t, 1);
+        const bool is_near = x_low <= (x_ + kTileSide) * kUnit && x_high >= x_ * kUnit &&
+                             y_low <= (y_ + kTileSide) * kUnit && y_high >= y_ * kUnit;
+        if (is_near && Plane(t).reach != 0)
+            triangles_.push_back({part, t});
+    }
+
+    /// Which of some voxels with sums nearer than `error` to a half have a half, without a look at each: in a brick
+    /// whose lowest voxel is (x, y, z). If planes in the brick face so few axes that volumes are whole numbers of a step
+    /// above 2 `error`, all have. A voxel that one plane alone passes has, if its centre is on that.
+    Slices sure_halves(const Slices& voxels, int x, int y, int z, double error) const {
+        constexpr size_t kFew = 64, kFewPlanes = 4; // kFew: per voxel
+        if (triangles_.size() > kFew * size_t(count(voxels)))
+            return {};
+        const int64_t corner[3] = {x * kUnit, y * kUnit, z * kUnit};
+        bool faces[3] = {}, oblique = false;
+        std::vector<Plane> planes;
+        for (const Listed& one : triangles_) {
+            int flat = 3;
+            bool apart = false;
+            for (int axis = 0; axis < 3; ++axis) {
+                const auto [low, high] = span_of(one.triangle, axis);
+                apart = apart || low >= corner[axis] + kBrickSide * kUnit || high <= corner[axis];
+                flat = low == high ? axis : flat;
+            }
+            if (apart)
+                continue;
+            (flat == 3 ? oblique : faces[flat]) = true;
+            if (std::none_of(planes.begin(), planes.end(), [&](const Plane& p) { return p.holds(one.triangle); }))
+                planes.emplace_back(one.triangle);
+        }
+        double step = 1;
+        for (const bool faced : faces)
+            step /= faced ? double(kUnit) : 1;
+        if (!oblique && 2 * error < step)
+            return voxels;
+        Slices found{};
+        for (int at = 0; planes.size() <= kFewPlanes && at < kBrickSide; ++at)
+            for (uint64_t left = voxels[size_t(at)]; left != 0; left &= left - 1) {
+                const int bit = std::countr_zero(left);
+                const auto centre = [](int cell) { return int32_t(cell * kUnit + kUnit / 2); };
+                const Vertex middle{centre(x + column_x(bit)), centre(y + column_y(bit)), centre(z + at)};
+                int passing = 0;
+                bool is_on = false;
+                for (const Plane& plane : planes) {
+                    const int128 height = plane.height(middle);
+                    is_on = is_on || height == 0;
+                    passing += (height < 0 ? -height : height) < plane.reach;
+                }
+                found[size_t(at)] |= uint64_t{is_on && passing == 1} << bit;
+            }
+        return found;
+    }
+
+    /// Those of a part in column (x, y) of the grid.
+    void find(uint32_t part, int x, int y, std::vector<SolidTriangle>& found) {
+        if (starts_.empty())
+            index();
+        const auto column = size_t((y - y_) * kTileSide + x - x_);
+        found.clear();
+        for (uint32_t i = starts_[column]; i < starts_[column + 1]; ++i)
+            if (triangles_[listed_[i]].part == part)
+                found.push_back(triangles_[listed_[i]].triangle);
+    }
+
+private:
+    struct Listed {
+        uint32_t part;
+        SolidTriangle triangle;
+    };
+
+    /// A plane through a triangle. It passes a voxel's interior if the centre is nearer to it than `reach`.
+    struct Plane {
+        explicit Plane(const SolidTriangle& t) : at(t) {
+            const int64_t u[3] = {int64_t{t[1].x} - t[0].x, int64_t{t[1].y} - t[0].y, int64_t{t[1].z} - t[0].z};
+            const int64_t v[3] = {int64_t{t[2].x} - t[0].x, int64_t{t[2].y} - t[0].y, int64_t{t[2].z} - t[0].z};
+            for (int i = 0; i < 3; ++i) {
+                const int j = (i + 1) % 3, k = (i + 2) % 3;
+                const int128 n = int128(u[j]) * v[k] - int128(u[k]) * v[j];
+                reach += (n < 0 ? -n : n) * (kUnit / 2);
+            }
+        }
+        int128 height(const Vertex& v) const { return volume6_of(at[0], at[1], at[2], v); }
+        bool holds(const SolidTriangle& t) const { return height(t[0]) == 0 && height(t[1]) == 0 && height(t[2]) == 0; }
+
+        SolidTriangle at;
+        int128 reach = 0;
+    };
+
+    static std::pair<int64_t, int64_t> span_of(const SolidTriangle& t, int axis) {
+        const auto at = [axis](const Vertex& v) { return int64_t{axis == 0 ? v.x : axis == 1 ? v.y : v.z}; };
+        return {std::min({at(t[0]), at(t[1]), at(t[2])}), std::max({at(t[0]), at(t[1]), at(t[2])})};
+    }
+
+    /// Calls take(column) with the columns that are asked for and that a triangle reaches; on a plane, both sides.
+    template <class Take> void for_each_column(const SolidTriangle& t, Take take) const {
+        const auto cells = [&t](int axis, int first) {
+            const auto [low, high] = span_of(t, axis);
+            return std::pair{std::max(voxel_below(low) - first, 0), std::min(voxel_floor(high) - first, kTileSide - 1)};
+        };
+        const auto [u0, u1] = cells(0, x_);
+        const auto [v0, v1] = cells(1, y_);
+        for (int v = v0; v <= v1; ++v)
+            for (int u = u0; u <= u1; ++u)
+                if (columns_[size_t(v * kTileSide + u)])
+                    take(size_t(v * kTileSide + u));
+    }
+
+    void index() {
+        starts_.assign(columns_.size() + 1, 0);
+        for (const Listed& one : triangles_)
+            for_each_column(one.triangle, [this](size_t column) { ++starts_[column + 1]; });
+        std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
+        listed_.resize(starts_.back());
+        std::vector<uint32_t> next = starts_;
+        for (uint32_t i = 0; i < triangles_.size(); ++i)
+            for_each_column(triangles_[i].triangle, [&](size_t column) { listed_[next[column]++] = i; });
+    }
+
+    const std::vector<bool>& columns_;
+    int x_, y_;
+    std::vector<Listed> triangles_;
+    std::vector<uint32_t> starts_, listed_; // by column: where its triangles' numbers start
+};
+
+} // namespace voxrt::voxelize
