@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from oracles.meshes import box_mesh, icosphere, joined, one_object, scene_of
-from oracles.rules import centres_inside, dilated, pieces, ruled
+from oracles.rules import AROUND, SIDES, centres_inside, dilated, pieces, ruled, shifted
 from oracles.voxels import dense, snap
 
 import voxrt
@@ -129,6 +129,37 @@ def test_an_open_surface_keeps_what_it_touches():
     for fill in ("auto", "surface"):
         made = [dense(voxelize(one_object(sheet), grid, fill=fill, rule=rule).voxels) for rule in ("touch", "centre")]
         np.testing.assert_array_equal(*made)
+
+
+def reached_from_outside(empty, steps):
+    left = np.pad(empty, 1, constant_values=True)
+    reached, count = np.zeros_like(left), 0
+    reached[0, 0, 0] = True
+    while (now := int(reached.sum())) != count:
+        count = now
+        reached |= left & np.logical_or.reduce([shifted(reached, step) for step in steps])
+    return reached[1:-1, 1:-1, 1:-1]
+
+
+@pytest.mark.parametrize("rule", ["touch", "centre", "half"])
+@pytest.mark.parametrize("shape", ["ball", "turned box", "box on planes", "faces through corners"])
+def test_surfaces_without_inside_leave_no_gap(shape, rule):
+    """A flood from outside stays there: by sides always, by edges and corners where the surface passes none of these."""
+    tips = 16 + 9 * np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)])
+    faces = [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)]
+    mesh = {
+        "ball": icosphere(2, (15.3, 16.1, 14.7), 9.5),
+        "turned box": turned(box_mesh((8, 9, 10), (21.3, 22.4, 20.1)), np.random.default_rng(2)),
+        "box on planes": box_mesh((8, 9, 10), (20, 21, 19)),
+        "faces through corners": Mesh(tips.astype(float), np.array(faces, np.int32), np.ones(8, np.uint8)),
+    }[shape]
+    grid = Grid(5, (0.0, 0.0, 0.0), 1.0)
+    shell = dense(voxelize(one_object(mesh), grid, fill="surface", rule=rule).voxels) != 0
+    solid = dense(voxelize(one_object(mesh), grid, fill="solid").voxels) != 0
+    outside = reached_from_outside(~shell, SIDES)
+    np.testing.assert_array_equal(~outside, solid)
+    if shape in ("ball", "turned box"):
+        np.testing.assert_array_equal(reached_from_outside(~shell, AROUND), outside)
 
 
 def test_a_surface_with_small_holes_is_that_without_but_near_them():
