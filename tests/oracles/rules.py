@@ -6,9 +6,11 @@ Written from the manual's chapter on voxels. Knows nothing of bricks, blocks or 
 from __future__ import annotations
 
 import itertools
-from collections import deque
+from collections import defaultdict, deque
+from fractions import Fraction
 
 import numpy as np
+from oracles.exposed import exposed_areas
 from oracles.voxels import UNIT, shell, volume6, winding, winding_at
 
 AROUND = [d for d in itertools.product((-1, 0, 1), repeat=3) if any(d)]
@@ -125,10 +127,14 @@ def keep_thin(touched, filled):
 
 
 def ruled(meshes, side, *, thin="keep"):
-    """Materials ([x, y, z]) by the rule `centre`, of closed meshes: (vertices, triangles, materials) each."""
+    """Materials ([x, y, z]) by the rule `centre`, of closed meshes: (vertices, triangles, materials) each.
+
+    Also says where two materials have areas so equal that rounding decides.
+    """
     touched = np.zeros((side,) * 3, np.uint8)
     owner = np.full((side,) * 3, -1)
     filled, surface = np.zeros((side,) * 3, bool), np.zeros((side,) * 3, bool)
+    several = np.zeros((side,) * 3, bool)  # may have surface of several materials
     own_surface = np.zeros((side,) * 3, bool)  # of the object that has the voxel
     for number, (vertices, triangles, materials) in enumerate(meshes):
         first = shell(vertices, triangles, side, inverted=volume6(vertices, triangles) < 0)
@@ -137,6 +143,7 @@ def ruled(meshes, side, *, thin="keep"):
         free = (touched == 0) & (mine != 0)
         touched[free], owner[free] = mine[free], number
         own_surface |= free & (first >= 0)
+        several |= (first >= 0) & (surface | (len(set(materials.tolist())) > 1))
         surface |= first >= 0
         filled |= centres_inside(vertices, triangles, side) & (mine != 0)
     solid = touched != 0
@@ -152,10 +159,29 @@ def ruled(meshes, side, *, thin="keep"):
         near = dilated(own_surface & (owner == number) & filled)
         orphan |= lost & (owner == number) & ~near & ~bare
     out = np.where(filled, touched, 0)
+    visible, open_to_doubt = np.zeros_like(lost), np.zeros_like(lost)
+    for step in SIDES:
+        visible |= filled & ~shifted(filled, step)
     done = np.zeros_like(lost)
     for step in SIDES:
-        shown = shifted(lost, step) & filled & ~surface
-        takes = (shown | (shifted(orphan, step) & filled & surface)) & ~done
+        takes = shifted(orphan, step) & filled & surface & ~done
         out[takes] = shifted(touched, step)[takes]
         done |= takes
-    return out
+    for voxel in map(tuple, np.argwhere(visible & ~done)):
+        beside = [tuple(v + d for v, d in zip(voxel, step, strict=True)) for step in SIDES]
+        of = [voxel] * bool(surface[voxel]) + [v for v in beside if all(0 <= c < side for c in v) and lost[v]]
+        out[voxel] = first = touched[of[0]] if of else touched[voxel]
+        if any(several[v] or touched[v] != first for v in of):
+            out[voxel], open_to_doubt[voxel] = largest(meshes, of, side, first)
+    return out, open_to_doubt
+
+
+def largest(meshes, voxels, side, default):
+    """The material with the largest exposed area in some voxels, and whether rounding decides it."""
+    areas = defaultdict(Fraction)
+    for voxel in voxels:
+        for material, area in exposed_areas(meshes, voxel, side).items():
+            areas[material] += area
+    most = max(areas.values(), default=0)
+    material = next((m for m, area in areas.items() if area == most), default)
+    return material, sum(most - area < 2**-18 for area in areas.values()) > 1

@@ -28,6 +28,7 @@ struct ShellBrick {
     uint32_t cells = kNone;       // row of materials where the shell has several
     uint32_t transparent = kNone; // row of voxels with fully transparent surface, where there is some
     uint32_t held = kNone;        // row of voxels that the surface fills under every rule, where there are some
+    uint32_t mixed = kNone;       // row of voxels with surface of another material, where this is wanted
     uint32_t pieces = kNone;      // row of what triangles add to volumes, where it is wanted
     uint8_t material = 0;         // the shell's only material, else 0
     bool crossed = false;         // enters or leaves may hold something
@@ -68,6 +69,9 @@ public:
         x_ = x;
         y_ = y;
     }
+
+    /// Whether voxels with surface of several materials are noted from now on.
+    void note_mixed(bool noted) { notes_mixed_ = noted; }
 
     /// The material of what is covered from now on, 1 … 255.
     void set_material(uint8_t material) { material_ = material; }
@@ -193,6 +197,9 @@ public:
     /// The voxels of a brick that hold() has received.
     Slices held(const ShellBrick& brick) const { return brick.held == kNone ? Slices{} : rows_[brick.held]; }
 
+    /// The voxels of a brick with surface of several materials.
+    Slices mixed(const ShellBrick& brick) const { return brick.mixed == kNone ? Slices{} : rows_[brick.mixed]; }
+
 private:
     Slices& row_of(uint32_t& row) {
         if (row == kNone) {
@@ -240,6 +247,11 @@ private:
             const int bit = std::countr_zero(fresh);
             cells[(bit & 7) * 64 + row * kBrickSide + (bit >> 3)] = material_;
         }
+        for (ColumnBytes again = notes_mixed_ ? voxels & brick.shell[row] : 0; again != 0; again &= again - 1) {
+            const int bit = std::countr_zero(again), column = row * kBrickSide + (bit >> 3);
+            if (cells[(bit & 7) * 64 + column] != material_)
+                row_of(brick.mixed)[bit & 7] |= uint64_t{1} << column;
+        }
     }
 
     /// Rays cross the surface at voxels of a row, one of a column at most.
@@ -261,12 +273,13 @@ private:
     int side_, height_;
     int x_ = 0, y_ = 0;
     uint8_t material_ = 0;
+    bool notes_mixed_ = false;
     std::vector<uint32_t> table_;
     std::vector<ShellBrick> bricks_;
     std::vector<uint32_t> slots_;
     std::vector<Cells> cells_;
     std::vector<VolumePieces> pieces_;
-    std::vector<Slices> rows_; // of voxels with transparent surface, and of voxels held
+    std::vector<Slices> rows_; // of voxels with transparent surface, held, or mixed
     std::vector<RepeatedCrossing> repeated_;
 };
 

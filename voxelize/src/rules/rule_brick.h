@@ -9,6 +9,7 @@ namespace voxrt::voxelize {
 struct RuleBrick {
     uint64_t code; // Morton code of the brick's corner / 8
     Slices touched, filled, surface;
+    Slices mixed{}; // of the surface: has several materials
 
     Slices removed() const { return without(touched, filled); }
 };

@@ -49,13 +49,35 @@ public:
         });
     }
 
+    /// Finds by areas what shows of several materials. The bricks and orphans must be final.
+    void find_shown(const BrickArea& area, const FindAreas& find_areas, const Workers& workers) {
+        if (has_one_material())
+            return;
+        std::vector<ContestedVoxels> found((bricks_.size() + kBricks - 1) / kBricks);
+        for_each_brick(workers, [&](size_t i) {
+            if (is_in(area, bricks_[i].code))
+                add_contested(i, found[i / kBricks]);
+        });
+        std::vector<uint64_t> codes;
+        for (const ContestedVoxels& part : found)
+            codes.insert(codes.end(), part.codes.begin(), part.codes.end());
+        if (codes.empty())
+            return;
+        const SurfaceAreas areas = find_areas(codes);
+        size_t next = 0;
+        for (const ContestedVoxels& part : found)
+            for (const ContestedVoxel& voxel : part.voxels) {
+                if (const uint8_t material = largest(areas, next, voxel.codes); material != 0)
+                    shown_.push_back({voxel.brick, voxel.place, material});
+                next += voxel.codes;
+            }
+    }
+
     /// The bricks of an area that differ from what is touched.
     ReplacedBricks replaced(const BrickArea& area, const Workers& workers) const {
         std::vector<ReplacedBricks> found((bricks_.size() + kBricks - 1) / kBricks);
         for_each_brick(workers, [&](size_t i) {
-            const uint64_t code = bricks_[i].code;
-            const uint32_t x = gather_bits(code), y = gather_bits(code >> 1);
-            if (x >= area.x0 && x < area.x1 && y >= area.y0 && y < area.y1)
+            if (is_in(area, bricks_[i].code))
                 add_replaced(i, found[i / kBricks]);
         });
         ReplacedBricks all;
@@ -71,15 +93,130 @@ public:
     }
 
     void count_lost(const BrickArea& area, std::vector<int64_t>& lost) const {
-        for (const OwnedSurface& part : owned_) {
-            const uint32_t x = gather_bits(part.code), y = gather_bits(part.code >> 1);
-            if (x >= area.x0 && x < area.x1 && y >= area.y0 && y < area.y1)
+        for (const OwnedSurface& part : owned_)
+            if (is_in(area, part.code))
                 lost[part.object] += count(without(part.voxels, bricks_[bricks_.find(part.code)].filled));
-        }
     }
 
 private:
     static constexpr size_t kBricks = 64; // per job
+
+    /// A voxel whose material areas decide, and how many voxels have these.
+    struct ContestedVoxel {
+        uint32_t brick;
+        uint16_t place; // Morton code in the brick
+        uint8_t codes;
+    };
+    struct ContestedVoxels {
+        std::vector<ContestedVoxel> voxels;
+        std::vector<uint64_t> codes; // of voxels whose areas are wanted
+    };
+    struct ShownVoxel {
+        uint32_t brick;
+        uint16_t place;
+        uint8_t material;
+    };
+
+    static bool is_in(const BrickArea& area, uint64_t code) {
+        const uint32_t x = gather_bits(code), y = gather_bits(code >> 1);
+        return x >= area.x0 && x < area.x1 && y >= area.y0 && y < area.y1;
+    }
+
+    bool has_one_material() const {
+        const auto is_other = [first = voxels_.brick_materials.empty() ? 0 : voxels_.brick_materials[0]](uint8_t m) {
+            return m == 0 || m != first;
+        };
+        return std::none_of(voxels_.brick_materials.begin(), voxels_.brick_materials.end(), is_other);
+    }
+
+    /// The material with the largest sum of areas over some voxels, the first of several; 0 where there is none.
+    static uint8_t largest(const SurfaceAreas& areas, size_t from, size_t count) {
+        std::vector<MaterialArea> sums;
+        for (size_t i = from; i < from + count; ++i)
+            for (const MaterialArea& one : areas.at(i)) {
+                const auto at = std::find_if(sums.begin(), sums.end(),
+                                             [&](const MaterialArea& sum) { return sum.material == one.material; });
+                if (at == sums.end())
+                    sums.push_back(one);
+                else
+                    at->area += one.area;
+            }
+        const auto most = std::max_element(sums.begin(), sums.end(), [](auto& a, auto& b) { return a.area < b.area; });
+        return most == sums.end() ? 0 : most->material;
+    }
+
+    /// Adds the filled voxels of a brick that show surface of several materials: their own, and that of voxels beside
+    /// them that are not filled.
+    void add_contested(size_t i, ContestedVoxels& out) const {
+        const RuleBrick& brick = bricks_[i];
+        const std::array<uint32_t, 27> around = bricks_.around(i, kSideMask);
+        const auto removed = [this](uint32_t n) { return bricks_[n].removed(); };
+        const auto filled = [this](uint32_t n) { return bricks_[n].filled; };
+        const auto removed_mixed = [this](uint32_t n) { return without(bricks_[n].mixed, bricks_[n].filled); };
+        const auto orphans = [this](uint32_t n) { return orphans_[n]; };
+        const BrickMaterials own = materials_of(voxels_, brick.code);
+        bool is_uniform = own.cells == nullptr;
+        Slices lost[6], mixed = brick.mixed, forced{}, any = brick.mixed, visible{};
+        BrickMaterials beside[6];
+        for (int side = 0; side < 6; ++side) {
+            lost[side] = shifted_by(around, side, removed, false);
+            const Slices lost_mixed = shifted_by(around, side, removed_mixed, false);
+            const Slices lying = shifted_by(around, side, orphans, false);
+            const Slices hidden = shifted_by(around, side, filled, true);
+            for (size_t z = 0; z < kBrickSide; ++z) {
+                visible[z] |= ~hidden[z];
+                mixed[z] |= lost_mixed[z];
+                any[z] |= lost[side][z] & brick.filled[z];
+                forced[z] |= lying[z] & brick.surface[z];
+            }
+            const uint32_t other = around[size_t(kSides[side])];
+            beside[side] =
+                other < RuleBricks::kFull && !is_empty(lost[side]) ? materials_of(voxels_, bricks_[other].code) : own;
+            is_uniform = is_uniform && beside[side].cells == nullptr && beside[side].only == own.only;
+        }
+        if (is_uniform && is_empty(mixed))
+            return;
+        const int corner[3] = {int(gather_bits(brick.code)) * kBrickSide,
+                               int(gather_bits(brick.code >> 1)) * kBrickSide,
+                               int(gather_bits(brick.code >> 2)) * kBrickSide};
+        for (int z = 0; z < kBrickSide; ++z)
+            for (uint64_t left = any[size_t(z)] & visible[size_t(z)] & brick.filled[size_t(z)] & ~forced[size_t(z)];
+                 left != 0; left &= left - 1) {
+                const int bit = std::countr_zero(left);
+                const int at[3] = {column_x(bit), column_y(bit), z};
+                const auto place_of = [](const int* v) {
+                    return morton(uint32_t(v[0]), uint32_t(v[1]), uint32_t(v[2]));
+                };
+                const auto code_of = [&](const int* v) {
+                    return morton(uint32_t(corner[0] + v[0]), uint32_t(corner[1] + v[1]), uint32_t(corner[2] + v[2]));
+                };
+                const size_t begin = out.codes.size(), place = place_of(at);
+                const bool has_surface = brick.surface[size_t(z)] >> bit & 1;
+                bool contested = mixed[size_t(z)] >> bit & 1;
+                uint8_t first = 0;
+                if (has_surface) {
+                    first = own.at(place);
+                    out.codes.push_back(code_of(at));
+                }
+                for (int side = 0; side < 6; ++side) {
+                    if (!(lost[side][size_t(z)] >> bit & 1))
+                        continue;
+                    int to[3] = {at[0], at[1], at[2]};
+                    int& moved = to[side / 2];
+                    moved += side % 2 == 0 ? -1 : 1;
+                    out.codes.push_back(code_of(to));
+                    const BrickMaterials& from = moved < 0 || moved >= kBrickSide ? beside[side] : own;
+                    moved &= 7;
+                    const uint8_t material = from.at(place_of(to));
+                    contested = contested || (first != 0 && material != first);
+                    first = first == 0 ? material : first;
+                }
+                if (contested)
+                    out.voxels.push_back({uint32_t(i), uint16_t(place), uint8_t(out.codes.size() - begin)});
+                else
+                    out.codes.resize(begin);
+            }
+    }
 
     template <class Work> void for_each_brick(const Workers& workers, Work work) const {
         workers.run((bricks_.size() + kBricks - 1) / kBricks, [&](size_t job, int) {
@@ -193,7 +330,10 @@ private:
                 done[z] |= takers[side][z];
             }
         }
-        if (is_empty(done) && is_empty(removed(uint32_t(i))))
+        const auto [shown_from, shown_to] =
+            std::equal_range(shown_.begin(), shown_.end(), ShownVoxel{uint32_t(i), 0, 0},
+                             [](const ShownVoxel& a, const ShownVoxel& b) { return a.brick < b.brick; });
+        if (is_empty(done) && is_empty(removed(uint32_t(i))) && shown_from == shown_to)
             return;
         ReplacedBrick& replaced = out.bricks.emplace_back();
         replaced = {brick.code, morton_order(brick.filled), 0, 0};
@@ -209,7 +349,7 @@ private:
             beside[side] = other < RuleBricks::kFull ? materials_of(voxels_, bricks_[other].code) : own;
             is_uniform = is_uniform && beside[side].cells == nullptr && beside[side].only == own.only;
         }
-        if (is_uniform) {
+        if (is_uniform && shown_from == shown_to) {
             replaced.material = own.only;
             return;
         }
@@ -232,6 +372,8 @@ private:
                 moved &= 7;
                 cells[place] = from.at(morton(uint32_t(at[0]), uint32_t(at[1]), uint32_t(at[2])));
             }
+        for (auto shown = shown_from; shown != shown_to; ++shown)
+            cells[shown->place] = shown->material;
         replaced.material = only_material(cells);
         if (replaced.material == 0) {
             replaced.row = uint32_t(out.cells.size());
@@ -243,16 +385,18 @@ private:
     RuleBricks bricks_;
     std::vector<OwnedSurface> owned_; // by code and object
     std::vector<Slices> orphans_;
+    std::vector<ShownVoxel> shown_; // by brick
 };
 
 } // namespace
 
 void apply_rule(SparseVoxels& voxels, const SparseVoxels& around, RuleFindings findings, const BrickArea& area,
-                Thin thin, std::vector<int64_t>& lost, const Workers& workers) {
+                Thin thin, const FindAreas& find_areas, std::vector<int64_t>& lost, const Workers& workers) {
     RuledVoxels ruled(around, findings);
     if (thin == Thin::keep)
         keep_thin_parts(ruled.bricks(), workers);
     ruled.find_orphans(workers);
+    ruled.find_shown(area, find_areas, workers);
     ruled.count_lost(area, lost);
     replace_bricks(voxels, ruled.replaced(area, workers));
 }

@@ -1,19 +1,19 @@
 // From the voxels that are touched to those that a rule fills, with materials of what one sees.
 //
-// A filled voxel keeps its material, but for two cases:
+// A filled voxel keeps its material, unless one sees another one there:
 //
-// - No surface passes it, and a voxel beside it is not filled: it takes the material of that one, whose surface shows.
 // - A thin part that gets no voxel of its own lies on it: a voxel with surface of an object is not filled, no filled
 //   one among its 26 neighbours has surface of the object, and none beside it is filled without surface. It gives its
-//   material to the voxels beside it.
-//
-// Of several voxels beside it, the first along -x, +x, -y, +y, -z, +z gives its material.
+//   material to the voxels beside it; of several, the first along -x, +x, -y, +y, -z, +z.
+// - Surface of several materials lies in it and in the voxels beside it that are not filled: the largest area shows
+//   (surface_areas.h). Where these voxels have one material, no area is asked for.
 #pragma once
 
 #include "../grid/sparse_voxels.h"
 #include "../work/workers.h"
 #include "rule.h"
 #include "rule_brick.h"
+#include "surface_areas.h"
 
 #include <vector>
 
@@ -35,6 +35,6 @@ struct BrickArea {
 /// `voxels`: those that are touched, within `area`. `around`: the same with those near the area, up to kThinReach;
 /// `findings` are of them.
 void apply_rule(SparseVoxels& voxels, const SparseVoxels& around, RuleFindings findings, const BrickArea& area,
-                Thin thin, std::vector<int64_t>& lost, const Workers& workers);
+                Thin thin, const FindAreas& find_areas, std::vector<int64_t>& lost, const Workers& workers);
 
 } // namespace voxrt::voxelize

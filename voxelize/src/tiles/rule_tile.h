@@ -25,7 +25,7 @@ struct HalfDoubt {
 class RuleTile {
 public:
     /// For tiles of a grid of `side` voxels.
-    explicit RuleTile(int side) : filled_(side), surface_(side) {}
+    explicit RuleTile(int side) : filled_(side), surface_(side), mixed_(side) {}
 
     /// Empties it for the tile at (tile_x, tile_y), in tiles.
     void clear(int tile_x, int tile_y) {
@@ -33,6 +33,7 @@ public:
         tile_y_ = tile_y;
         filled_.clear();
         surface_.clear();
+        mixed_.clear();
         owned_.clear();
         for (const size_t slot : summed_)
             sum_rows_[slot] = kNone;
@@ -58,13 +59,20 @@ public:
     /// Bricks from <= k < to of a column are filled, and have no surface.
     void add_full(int column, int from, int to) { filled_.claim_full(column, from, to, kAny); }
 
-    /// `claimed`: those of the voxels with surface that no earlier object had.
-    void add(int column, int k, const Slices& filled, const Slices& surface, const Slices& claimed) {
+    /// `claimed`: those of the voxels with surface that no earlier object had. `mixed`: of the surface, what has
+    /// several materials.
+    void add(int column, int k, const Slices& filled, const Slices& surface, const Slices& claimed,
+             const Slices& mixed = {}) {
         if (!is_empty(filled))
             filled_.claim(column, k, filled, kAny, nullptr);
         if (is_empty(surface))
             return;
         surface_.claim(column, k, surface, kAny, nullptr);
+        Slices several = without(surface, claimed);
+        for (int z = 0; z < kBrickSide; ++z)
+            several[size_t(z)] |= mixed[size_t(z)];
+        if (!is_empty(several))
+            mixed_.claim(column, k, several, kAny, nullptr);
         if (!is_empty(claimed))
             owned_.push_back({code_of(column, k), object_, claimed});
     }
@@ -109,7 +117,8 @@ public:
                         doubts.push_back({bricks.size(), column, k, near});
                 for (int z = 0; z < kBrickSide; ++z)
                     filled[z] &= touched[z];
-                bricks.push_back({code_of(column, k), touched, filled, surface_.mask_of(surface)});
+                bricks.push_back({code_of(column, k), touched, filled, surface_.mask_of(surface),
+                                  mixed_.mask_of(*mixed_.slots(column, k))});
             }
         }
         owned.insert(owned.end(), owned_.begin(), owned_.end());
@@ -186,7 +195,7 @@ private:
                       uint32_t(tile_y_ * kTileBricks + column / kTileBricks), uint32_t(k));
     }
 
-    TileVoxels filled_, surface_;
+    TileVoxels filled_, surface_, mixed_;
     std::vector<uint32_t> sum_rows_; // by slot: where the sums of volumes stand
     std::vector<size_t> summed_;     // the slots that have some
     std::vector<std::array<double, kBrickVoxels>> sums_;

@@ -47,7 +47,7 @@ public:
             Slices claimed;
             result.voxels += tile.claim(column, k, shell, brick.material, cells, rule_ ? &claimed : nullptr);
             if (rule_)
-                rule_->add(column, k, shell, shell, claimed);
+                rule_->add(column, k, shell, shell, claimed, object.mixed(brick));
         }
         return result;
     }
@@ -291,7 +291,7 @@ private:
                                            : (within[z] | held[z]) & mask[z];
             claimed[z] &= shell[z];
         }
-        rule_->add(column, k, filled, shell, claimed);
+        rule_->add(column, k, filled, shell, claimed, object.mixed(brick));
     }
 
     /// Claims the shell and what is hidden behind it: `mask`. `claimed` becomes what was free, where a rule wants it.

@@ -7,8 +7,8 @@
 #include "../coverage/vector_coverage.h"
 #include "../coverage/volume_pieces.h"
 #include "convex_solids.h"
-#include "half_doubts.h"
 #include "solid_fill.h"
+#include "tile_halves.h"
 #include "tile_order.h"
 #include "triangle_bins.h"
 #include "voxelizer.h"
@@ -61,11 +61,11 @@ private:
     TileSurface& surface_;
 };
 
-class TileWorker {
+class TileWorker : TileParts {
 public:
     TileWorker(const std::vector<PartView>& parts, const TriangleBins& bins, int side, Fill fill,
                const CoverageEngine& engine)
-        : parts_(parts), bins_(bins), side_(side), fill_(fill), cover_by_vectors_(engine.cover_by_vectors) {}
+        : TileParts(parts, bins, side, fill), cover_by_vectors_(engine.cover_by_vectors) {}
 
     /// `slot`: the place of `out` among the results of a block.
     void work(uint32_t index, uint32_t slot, Scratch& s, TileResult& out) const {
@@ -76,7 +76,7 @@ public:
             s.sorter.sort(s.tile, slot, tile_x, tile_y, out);
         if (s.rule)
             if (const std::vector<HalfDoubt> doubts = s.rule->list(s.tile, out.rule_bricks, out.owned); !doubts.empty())
-                decide(doubts, index, s, out.rule_bricks);
+                TileHalves(parts_, bins_, side_, fill_).decide(doubts, index, *s.rule, s.vertices, out.rule_bricks);
         s.seconds.order += lap();
     }
 
@@ -119,123 +119,6 @@ private:
         });
     }
 
-    /// Calls take(part, triangles) with each part of a tile, and what the tile lists of it.
-    template <class Take> void for_each_run(uint32_t index, Take take) const {
-        for (uint32_t i = bins_.starts[index], end = bins_.starts[index + 1]; i < end;) {
-            const uint32_t part = bins_.triangles[i].part;
-            uint32_t next = i + 1;
-            while (next < end && bins_.triangles[next].part == part)
-                ++next;
-            take(part, std::span(bins_.triangles.data() + i, next - i));
-            i = next;
-        }
-    }
-
-    /// Fills those of some voxels whose volumes add up to a half.
-    void decide(const std::vector<HalfDoubt>& doubts, uint32_t index, Scratch& s,
-                std::vector<RuleBrick>& bricks) const {
-        const int x0 = int(index) % bins_.tiles_per_side * kTileSide;
-        const int y0 = int(index) / bins_.tiles_per_side * kTileSide;
-        const auto at = [](const HalfDoubt& doubt, int bit) {
-            return std::pair{doubt.column % kTileBricks * kBrickSide + column_x(bit),
-                             doubt.column / kTileBricks * kBrickSide + column_y(bit)};
-        };
-        std::vector<bool> columns(size_t{kTileSide * kTileSide});
-        for (const HalfDoubt& doubt : doubts)
-            for (uint64_t left = any_of(doubt.voxels); left != 0; left &= left - 1) {
-                const auto [u, v] = at(doubt, std::countr_zero(left));
-                columns[size_t(v * kTileSide + u)] = true;
-            }
-        TileSolids near(columns, x0, y0);
-        for_each_run(index, [&](uint32_t part, std::span<const BinnedTriangle> triangles) {
-            if (parts_[part].rule != Rule::half || parts_[part].kind != PartKind::mesh)
-                return;
-            const std::vector<Vertex>& vertices = vertices_of(part, s);
-            std::optional<CappedSurface> own;
-            const CappedSurface* capped = capped_of(part, vertices, own);
-            if (triangles[0].triangle != kWholePart)
-                for (const BinnedTriangle& binned : triangles)
-                    add_closing(part, binned.triangle, capped, vertices, near);
-            else
-                for (uint32_t t = 0; t < parts_[part].mesh->triangle_count(); ++t)
-                    add_closing(part, t, capped, vertices, near);
-        });
-        std::vector<SolidTriangle> column;
-        for (const HalfDoubt& doubt : doubts) {
-            count_work(1000);
-            RuleBrick& brick = bricks[doubt.brick];
-            const auto [u0, v0] = at(doubt, 0);
-            const Slices sure =
-                near.sure_halves(doubt.voxels, x0 + u0, y0 + v0, doubt.k * kBrickSide, s.rule->error_bound());
-            for (int z = 0; z < kBrickSide; ++z) {
-                uint64_t halves = sure[size_t(z)];
-                for (uint64_t left = doubt.voxels[size_t(z)] & ~halves; left != 0; left &= left - 1) {
-                    const int bit = std::countr_zero(left);
-                    const auto [u, v] = at(doubt, bit);
-                    const std::array<int, 3> voxel{x0 + u, y0 + v, doubt.k * kBrickSide + z};
-                    ExactSum sum;
-                    s.rule->for_each_summand(doubt, z, bit,
-                                             [&](uint32_t part) { add_exact_volume(part, voxel, near, column, sum); });
-                    halves |= uint64_t{sum.at_least_half()} << bit;
-                }
-                brick.filled[size_t(z)] |= halves & brick.touched[size_t(z)];
-            }
-        }
-    }
-
-    /// Adds what a part fills of a voxel. `column`: for its triangles.
-    void add_exact_volume(uint32_t part, const std::array<int, 3>& voxel, TileSolids& near,
-                          std::vector<SolidTriangle>& column, ExactSum& sum) const {
-        const auto [x, y, z] = voxel;
-        if (parts_[part].kind == PartKind::box) {
-            sum.add(box_of(parts_[part]).volume_in_units(x, y, z), int128{1} << 3 * kFractionBits);
-            return;
-        }
-        count_work(1000);
-        near.find(part, x, y, column);
-        voxelize::add_exact_volume(column, x, y, z, sum);
-    }
-
-    /// Adds a triangle of a part, wound as it counts, if it encloses something.
-    void add_closing(uint32_t part, uint32_t t, const CappedSurface* capped, const std::vector<Vertex>& vertices,
-                     TileSolids& near) const {
-        const MeshAnalysis& analysis = bins_.meshes[part];
-        const MeshView& mesh = *parts_[part].mesh;
-        const Orientation* orientation = analysis.orientation.get();
-        if (t >= mesh.triangle_count() || analysis.is_covered(mesh, t) ||
-            (capped != nullptr && capped->is_shell_only(t)) || (orientation != nullptr && orientation->is_uncounted(t)))
-            return;
-        const int32_t* corner = mesh.triangles.data() + 3 * size_t{t};
-        const bool reversed = orientation != nullptr && orientation->is_reversed(t);
-        near.add(part, {vertices[corner[0]], vertices[corner[reversed ? 2 : 1]], vertices[corner[reversed ? 1 : 2]]});
-    }
-
-    /// The snapped vertices of a part, in `s` where no analysis holds them.
-    const std::vector<Vertex>& vertices_of(uint32_t index, Scratch& s) const {
-        if (!bins_.meshes[index].vertices.empty())
-            return bins_.meshes[index].vertices;
-        const PartView& part = parts_[index];
-        s.vertices.resize(part.mesh->vertex_count());
-        for (size_t v = 0; v < s.vertices.size(); ++v)
-            s.vertices[v] = snap_vertex(part, v);
-        return s.vertices;
-    }
-
-    /// What closes an open part, or null. An instance makes its caps anew in each tile, in `own`: to keep those of all
-    /// instances would take too much memory.
-    const CappedSurface* capped_of(uint32_t index, const std::vector<Vertex>& vertices,
-                                   std::optional<CappedSurface>& own) const {
-        const MeshAnalysis& analysis = bins_.meshes[index];
-        if (!analysis.capped && analysis.hole_caps)
-            own.emplace(analysis.hole_caps, [&vertices](uint32_t v) { return vertices[v]; });
-        return own ? &*own : analysis.capped.get();
-    }
-
-    static AxisBox box_of(const PartView& part) {
-        const auto whole = [&part](int i) { return int64_t(snap(part.frame[i], part.object)); };
-        return {{whole(0), whole(1), whole(2)}, {whole(3), whole(4), whole(5)}};
-    }
-
     void add_solid(const PartView& part, const Window& window, Scratch& s) const {
         const double* f = part.frame;
         auto whole = [&](int i) { return int64_t(snap(f[i], part.object)); };
@@ -243,8 +126,7 @@ private:
         if (part.kind == PartKind::box)
             claimed = claim_convex(s.tile, s.rule.get(), window, box_of(part), fills(fill_), part.material);
         else if (part.kind == PartKind::ball)
-            claimed = claim_convex(s.tile, s.rule.get(), window, Ball{{whole(0), whole(1), whole(2)}, whole(3)},
-                                   fills(fill_), part.material);
+            claimed = claim_convex(s.tile, s.rule.get(), window, ball_of(part), fills(fill_), part.material);
         else
             claimed = claim_convex(s.tile, s.rule.get(), window, Ellipsoid(f), fills(fill_), part.material);
         s.object_voxels[part.object] += claimed;
@@ -253,8 +135,9 @@ private:
     void add_mesh(uint32_t index, std::span<const BinnedTriangle> triangles, const Window& window, Scratch& s) const {
         const PartView& part = parts_[index];
         const MeshAnalysis& analysis = bins_.meshes[index];
-        const std::vector<Vertex>* vertices = &vertices_of(index, s);
+        const std::vector<Vertex>* vertices = &vertices_of(index, s.vertices);
         s.surface.reset(window.x0, window.y0);
+        s.surface.note_mixed(s.rule != nullptr);
         Stopwatch lap;
         std::optional<CappedSurface> own;
         const CappedSurface* capped = capped_of(index, *vertices, own);
@@ -373,10 +256,6 @@ private:
         }
     }
 
-    const std::vector<PartView>& parts_;
-    const TriangleBins& bins_;
-    int side_;
-    Fill fill_;
     CoverByVectors cover_by_vectors_;
 };
 

@@ -3,8 +3,10 @@
 #include "../rules/rule_voxels.h"
 #include "../rules/thin_parts.h"
 #include "../vectors/instruction_sets.h"
+#include "tile_areas.h"
 #include "tile_worker.h"
 
+#include <numeric>
 #include <optional>
 
 namespace voxrt::voxelize {
@@ -257,6 +259,43 @@ struct BlockVoxelizer::State {
         return found;
     }
 
+    /// The areas of surface in voxels, by Morton code.
+    SurfaceAreas areas_of(std::span<const uint64_t> codes) {
+        const auto tile_of = [this](uint64_t code) {
+            return gather_bits(code >> 1) / kTileSide * uint32_t(bins.tiles_per_side) + gather_bits(code) / kTileSide;
+        };
+        std::vector<uint32_t> order(codes.size()); // by tile
+        std::iota(order.begin(), order.end(), 0u);
+        std::stable_sort(order.begin(), order.end(),
+                         [&](uint32_t a, uint32_t b) { return tile_of(codes[a]) < tile_of(codes[b]); });
+        std::vector<uint64_t> sorted(codes.size());
+        std::vector<size_t> starts; // of tiles
+        for (size_t i = 0; i < codes.size(); ++i) {
+            sorted[i] = codes[order[i]];
+            if (i == 0 || tile_of(sorted[i]) != tile_of(sorted[i - 1]))
+                starts.push_back(i);
+        }
+        starts.push_back(codes.size());
+        std::vector<SurfaceAreas> found(starts.size() - 1);
+        const TileAreas tiles(parts, bins, side, fill);
+        workers.run(found.size(), [&](size_t job, int thread) {
+            const std::span<const uint64_t> own(sorted.data() + starts[job], starts[job + 1] - starts[job]);
+            if (!scratch[size_t(thread)])
+                scratch[size_t(thread)] = std::make_unique<Scratch>(side, objects, parts.size(), has_rule);
+            tiles.find_areas(tile_of(own[0]), own, scratch[size_t(thread)]->vertices, found[job]);
+        });
+        std::vector<std::span<const MaterialArea>> rows(codes.size());
+        for (size_t job = 0; job < found.size(); ++job)
+            for (size_t i = starts[job]; i < starts[job + 1]; ++i)
+                rows[order[i]] = found[job].at(i - starts[job]);
+        SurfaceAreas all;
+        for (const auto& row : rows) {
+            all.areas.insert(all.areas.end(), row.begin(), row.end());
+            all.end_voxel();
+        }
+        return all;
+    }
+
     /// The voxels of a block by the rule.
     SparseVoxels ruled(const ColumnBlock& block, std::vector<ObjectTally>& tallies) {
         std::vector<TileResult> found = results(occupied(block), tallies);
@@ -289,8 +328,10 @@ struct BlockVoxelizer::State {
         const TileRange range = tiles_of(block);
         const auto brick = [](int tile) { return uint32_t(tile) * kTileBricks; };
         std::vector<int64_t> lost(objects, 0);
-        apply_rule(voxels, beside.empty() ? voxels : around, std::move(findings),
-                   {brick(range.x0), brick(range.x1 + 1), brick(range.y0), brick(range.y1 + 1)}, thin, lost, workers);
+        apply_rule(
+            voxels, beside.empty() ? voxels : around, std::move(findings),
+            {brick(range.x0), brick(range.x1 + 1), brick(range.y0), brick(range.y1 + 1)}, thin,
+            [this](std::span<const uint64_t> codes) { return areas_of(codes); }, lost, workers);
         for (size_t i = 0; i < objects; ++i)
             tallies[i].voxels -= lost[i];
         seconds.fill += lap();

@@ -1,4 +1,4 @@
-// Decides by fractions in which voxels of a tile the volumes add up to a half, where floating point does not.
+// Triangles of a tile by column, for what is decided voxel by voxel.
 #pragma once
 
 #include "../coverage/exact_volume.h"
@@ -6,27 +6,40 @@
 #include "rule_tile.h"
 
 #include <numeric>
+#include <tuple>
 
 namespace voxrt::voxelize {
 
 /// Triangles of the solids of a tile, by column.
 class TileSolids {
 public:
-    /// `columns`: by column of the tile whose lowest one is (x, y), whether it is asked for.
-    TileSolids(const std::vector<bool>& columns, int x, int y) : columns_(columns), x_(x), y_(y) {}
+    struct Listed {
+        uint32_t part, number; // of the triangle in its part
+        SolidTriangle triangle;
+        std::array<int64_t, 3> low, high;
+    };
 
-    void add(uint32_t part, const SolidTriangle& t) {
-        const auto [x_low, x_high] = span_of(t, 0);
-        const auto [y_low, y_high] = span_of(t, 1);
-        const bool is_near = x_low <= (x_ + kTileSide) * kUnit && x_high >= x_ * kUnit &&
-                             y_low <= (y_ + kTileSide) * kUnit && y_high >= y_ * kUnit;
+    /// `columns`: by column of the tile whose lowest one is (x, y), whether it is asked for.
+    TileSolids(const std::vector<bool>& columns, int x, int y) : x_(x), y_(y) {
+        for (uint32_t column = 0; column < columns.size(); ++column)
+            if (columns[column])
+                wanted_.push_back(column);
+    }
+
+    /// `number`: of the triangle in its part.
+    void add(uint32_t part, uint32_t number, const SolidTriangle& t) {
+        Listed listed{part, number, t, {}, {}};
+        for (int axis = 0; axis < 3; ++axis)
+            std::tie(listed.low[size_t(axis)], listed.high[size_t(axis)]) = span_of(t, axis);
+        const bool is_near = listed.low[0] <= (x_ + kTileSide) * kUnit && listed.high[0] >= x_ * kUnit &&
+                             listed.low[1] <= (y_ + kTileSide) * kUnit && listed.high[1] >= y_ * kUnit;
         if (is_near && Plane(t).reach != 0)
-            triangles_.push_back({part, t});
+            triangles_.push_back(listed);
     }
 
     /// Which of some voxels with sums nearer than `error` to a half have a half, without a look at each: in a brick
-    /// whose lowest voxel is (x, y, z). If planes in the brick face so few axes that volumes are whole numbers of a step
-    /// above 2 `error`, all have. A voxel that one plane alone passes has, if its centre is on that.
+    /// whose lowest voxel is (x, y, z). If planes in the brick face so few axes that volumes are whole numbers of a
+    /// step above 2 `error`, all have. A voxel that one plane alone passes has, if its centre is on that.
     Slices sure_halves(const Slices& voxels, int x, int y, int z, double error) const {
         constexpr size_t kFew = 64, kFewPlanes = 4; // kFew: per voxel
         if (triangles_.size() > kFew * size_t(count(voxels)))
@@ -38,7 +51,7 @@ public:
             int flat = 3;
             bool apart = false;
             for (int axis = 0; axis < 3; ++axis) {
-                const auto [low, high] = span_of(one.triangle, axis);
+                const int64_t low = one.low[size_t(axis)], high = one.high[size_t(axis)];
                 apart = apart || low >= corner[axis] + kBrickSide * kUnit || high <= corner[axis];
                 flat = low == high ? axis : flat;
             }
@@ -71,23 +84,26 @@ public:
         return found;
     }
 
-    /// Those of a part in column (x, y) of the grid.
-    void find(uint32_t part, int x, int y, std::vector<SolidTriangle>& found) {
+    /// Calls take(triangle) with those in column (x, y) of the grid.
+    template <class Take> void for_each_at(int x, int y, Take take) {
         if (starts_.empty())
             index();
         const auto column = size_t((y - y_) * kTileSide + x - x_);
+        for (uint32_t i = starts_[column]; i < starts_[column + 1]; ++i) {
+            take(triangles_[listed_[i]]);
+        }
+    }
+
+    /// Those of a part in column (x, y) of the grid.
+    void find(uint32_t part, int x, int y, std::vector<SolidTriangle>& found) {
         found.clear();
-        for (uint32_t i = starts_[column]; i < starts_[column + 1]; ++i)
-            if (triangles_[listed_[i]].part == part)
-                found.push_back(triangles_[listed_[i]].triangle);
+        for_each_at(x, y, [&](const Listed& one) {
+            if (one.part == part)
+                found.push_back(one.triangle);
+        });
     }
 
 private:
-    struct Listed {
-        uint32_t part;
-        SolidTriangle triangle;
-    };
-
     /// A plane through a triangle. It passes a voxel's interior if the centre is nearer to it than `reach`.
     struct Plane {
         explicit Plane(const SolidTriangle& t) : at(t) {
@@ -112,31 +128,31 @@ private:
     }
 
     /// Calls take(column) with the columns that are asked for and that a triangle reaches; on a plane, both sides.
-    template <class Take> void for_each_column(const SolidTriangle& t, Take take) const {
-        const auto cells = [&t](int axis, int first) {
-            const auto [low, high] = span_of(t, axis);
-            return std::pair{std::max(voxel_below(low) - first, 0), std::min(voxel_floor(high) - first, kTileSide - 1)};
+    template <class Take> void for_each_column(const Listed& t, Take take) const {
+        const auto cells = [&t](size_t axis, int first) {
+            return std::pair{std::max(voxel_below(t.low[axis]) - first, 0),
+                             std::min(voxel_floor(t.high[axis]) - first, kTileSide - 1)};
         };
         const auto [u0, u1] = cells(0, x_);
         const auto [v0, v1] = cells(1, y_);
-        for (int v = v0; v <= v1; ++v)
-            for (int u = u0; u <= u1; ++u)
-                if (columns_[size_t(v * kTileSide + u)])
-                    take(size_t(v * kTileSide + u));
+        for (auto at = std::lower_bound(wanted_.begin(), wanted_.end(), uint32_t(v0 * kTileSide + u0));
+             at != wanted_.end() && *at <= uint32_t(v1 * kTileSide + u1); ++at)
+            if (const int u = int(*at) % kTileSide; u >= u0 && u <= u1)
+                take(size_t(*at));
     }
 
     void index() {
-        starts_.assign(columns_.size() + 1, 0);
+        starts_.assign(size_t{kTileSide * kTileSide} + 1, 0);
         for (const Listed& one : triangles_)
-            for_each_column(one.triangle, [this](size_t column) { ++starts_[column + 1]; });
+            for_each_column(one, [this](size_t column) { ++starts_[column + 1]; });
         std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
         listed_.resize(starts_.back());
         std::vector<uint32_t> next = starts_;
         for (uint32_t i = 0; i < triangles_.size(); ++i)
-            for_each_column(triangles_[i].triangle, [&](size_t column) { listed_[next[column]++] = i; });
+            for_each_column(triangles_[i], [&](size_t column) { listed_[next[column]++] = i; });
     }
 
-    const std::vector<bool>& columns_;
+    std::vector<uint32_t> wanted_; // columns
     int x_, y_;
     std::vector<Listed> triangles_;
     std::vector<uint32_t> starts_, listed_; // by column: where its triangles' numbers start
