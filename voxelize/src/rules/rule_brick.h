@@ -9,9 +9,14 @@ namespace voxrt::voxelize {
 struct RuleBrick {
     uint64_t code; // Morton code of the brick's corner / 8
     Slices touched, filled, surface;
-    Slices mixed{}; // of the surface: has several materials
 
     Slices removed() const { return without(touched, filled); }
+};
+
+/// The voxels of a brick with surface of several materials.
+struct MixedSurface {
+    uint64_t code;
+    Slices voxels;
 };
 
 /// The voxels with surface that one object claimed in a brick.

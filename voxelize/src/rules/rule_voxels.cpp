@@ -30,7 +30,9 @@ BrickMaterials materials_of(const SparseVoxels& voxels, uint64_t code) {
 class RuledVoxels {
 public:
     RuledVoxels(const SparseVoxels& around, RuleFindings& findings)
-        : voxels_(around), bricks_(around, std::move(findings.bricks)), owned_(std::move(findings.owned)) {
+        : voxels_(around), bricks_(around, std::move(findings.bricks)), owned_(std::move(findings.owned)),
+          mixed_(std::move(findings.mixed)) {
+        std::sort(mixed_.begin(), mixed_.end(), [](const auto& a, const auto& b) { return a.code < b.code; });
         std::sort(owned_.begin(), owned_.end(), [](const OwnedSurface& a, const OwnedSurface& b) {
             return a.code != b.code ? a.code < b.code : a.object < b.object;
         });
@@ -117,6 +119,12 @@ private:
         uint8_t material;
     };
 
+    Slices mixed_in(uint64_t code) const {
+        const auto at = std::lower_bound(mixed_.begin(), mixed_.end(), code,
+                                         [](const MixedSurface& a, uint64_t wanted) { return a.code < wanted; });
+        return at != mixed_.end() && at->code == code ? at->voxels : Slices{};
+    }
+
     static bool is_in(const BrickArea& area, uint64_t code) {
         const uint32_t x = gather_bits(code), y = gather_bits(code >> 1);
         return x >= area.x0 && x < area.x1 && y >= area.y0 && y < area.y1;
@@ -152,11 +160,11 @@ private:
         const std::array<uint32_t, 27> around = bricks_.around(i, kSideMask);
         const auto removed = [this](uint32_t n) { return bricks_[n].removed(); };
         const auto filled = [this](uint32_t n) { return bricks_[n].filled; };
-        const auto removed_mixed = [this](uint32_t n) { return without(bricks_[n].mixed, bricks_[n].filled); };
+        const auto removed_mixed = [this](uint32_t n) { return without(mixed_in(bricks_[n].code), bricks_[n].filled); };
         const auto orphans = [this](uint32_t n) { return orphans_[n]; };
         const BrickMaterials own = materials_of(voxels_, brick.code);
         bool is_uniform = own.cells == nullptr;
-        Slices lost[6], mixed = brick.mixed, forced{}, any = brick.mixed, visible{};
+        Slices lost[6], mixed = mixed_in(brick.code), forced{}, any = mixed, visible{};
         BrickMaterials beside[6];
         for (int side = 0; side < 6; ++side) {
             lost[side] = shifted_by(around, side, removed, false);
@@ -384,6 +392,7 @@ private:
     const SparseVoxels& voxels_;
     RuleBricks bricks_;
     std::vector<OwnedSurface> owned_; // by code and object
+    std::vector<MixedSurface> mixed_; // by code
     std::vector<Slices> orphans_;
     std::vector<ShownVoxel> shown_; // by brick
 };

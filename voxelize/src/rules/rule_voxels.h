@@ -23,6 +23,7 @@ namespace voxrt::voxelize {
 struct RuleFindings {
     std::vector<RuleBrick> bricks;
     std::vector<OwnedSurface> owned;
+    std::vector<MixedSurface> mixed;
 };
 
 /// Bricks x0 <= x < x1, y0 <= y < y1.

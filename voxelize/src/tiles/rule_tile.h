@@ -100,7 +100,7 @@ public:
 
     /// Appends the bricks of the tile, and who owns their surface. Returns the voxels that volumes do not decide.
     std::vector<HalfDoubt> list(const TileVoxels& tile, std::vector<RuleBrick>& bricks,
-                                std::vector<OwnedSurface>& owned) const {
+                                std::vector<OwnedSurface>& owned, std::vector<MixedSurface>& mixed) const {
         std::vector<HalfDoubt> doubts;
         for (int column = 0; column < kTileColumns; ++column) {
             if (!tile.column_used(column))
@@ -117,8 +117,9 @@ public:
                         doubts.push_back({bricks.size(), column, k, near});
                 for (int z = 0; z < kBrickSide; ++z)
                     filled[z] &= touched[z];
-                bricks.push_back({code_of(column, k), touched, filled, surface_.mask_of(surface),
-                                  mixed_.mask_of(*mixed_.slots(column, k))});
+                bricks.push_back({code_of(column, k), touched, filled, surface_.mask_of(surface)});
+                if (const uint32_t several = *mixed_.slots(column, k); several != 0)
+                    mixed.push_back({code_of(column, k), mixed_.mask_of(several)});
             }
         }
         owned.insert(owned.end(), owned_.begin(), owned_.end());

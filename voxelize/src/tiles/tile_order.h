@@ -29,8 +29,9 @@ struct TileResult {
     std::vector<uint64_t> octant_codes;
     std::vector<uint8_t> octant_levels, octant_materials;
     std::vector<CubeRun> runs;
-    std::vector<RuleBrick> rule_bricks; // these two for rules other than `touch`
+    std::vector<RuleBrick> rule_bricks; // these three for rules other than `touch`
     std::vector<OwnedSurface> owned;
+    std::vector<MixedSurface> mixed;
     std::vector<VoxelVolume> volumes; // where these alone are wanted
 };
 

@@ -75,7 +75,8 @@ public:
         if (!s.tile.empty())
             s.sorter.sort(s.tile, slot, tile_x, tile_y, out);
         if (s.rule)
-            if (const std::vector<HalfDoubt> doubts = s.rule->list(s.tile, out.rule_bricks, out.owned); !doubts.empty())
+            if (const std::vector<HalfDoubt> doubts = s.rule->list(s.tile, out.rule_bricks, out.owned, out.mixed);
+                !doubts.empty())
                 TileHalves(parts_, bins_, side_, fill_).decide(doubts, index, *s.rule, s.vertices, out.rule_bricks);
         s.seconds.order += lap();
     }

@@ -306,6 +306,8 @@ struct BlockVoxelizer::State {
             for (TileResult& tile : from) {
                 findings.bricks.insert(findings.bricks.end(), tile.rule_bricks.begin(), tile.rule_bricks.end());
                 findings.owned.insert(findings.owned.end(), tile.owned.begin(), tile.owned.end());
+                findings.mixed.insert(findings.mixed.end(), tile.mixed.begin(), tile.mixed.end());
+                tile.mixed = {};
                 tile.rule_bricks = {};
                 tile.owned = {};
             }
