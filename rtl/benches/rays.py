@@ -54,3 +54,11 @@ def some_direction():
     if random.random() < 0.05:
         direction[random.randrange(3)] = random.choice([1, -1]) * random.choice([OVERFLOW, OVERFLOW + 1, (1 << 28) - 1])
     return direction
+
+
+def aimed_direction(position, side):
+    """Make a direction from a position, 1/16 voxel, to a random point of the world, short or long."""
+    way = [random.randint(0, 16 * side) - place for place in position]
+    longest = max(map(abs, way)) or 1
+    scale = random.choice([1, (OVERFLOW - 1) // longest, random.randint(1, (OVERFLOW - 1) // longest)])
+    return [scale * step for step in way]

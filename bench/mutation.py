@@ -1,0 +1,213 @@
+"""Mutation: how many small faults of the core the benches find.
+
+Usage: ``python bench/mutation.py [--write] [--mutants N] [GROUP ...]``. ``--write`` writes
+``bench/results/mutation.md`` too. Needs the packages of ``make .venv/.hardware``.
+
+Each mutant (bench/mutants.py) meets the bench of its module until the first failure. What survives meets a larger
+bench, then a proof that it changes nothing. What was found is in ``build/mutation``: a campaign that was interrupted
+goes on, and after a change of the benches only survivors meet them again.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+from collections import Counter
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from mutants import FOLDER, GROUPS, REPEATED, Mutant, compile_bench, make_mutants, run_yosys, shares
+from report import ROOT, options_of, publish, table
+from run import SEED, get_results, prepare
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from run import Build
+
+BENCHES = ROOT / "rtl" / "benches"
+MUTANTS = 1000
+PATIENCE = 4  # A bench that takes so many times the processor time that it takes without a fault has found it.
+KILLED = ("own bench", "larger bench", "proof")
+ALIVE, EQUIVALENT = "alive", "equivalent"
+# Survivors that were looked at: group, place and fault, and why no bench finds it.
+REASONS: dict[str, str] = {}
+
+
+def run_bench(runner: object, build: Build, folder: Path, mutant: int, seconds: int | None = None) -> bool:
+    """Run a bench with one mutant until its first failure; tell whether all of it passed."""
+    os.environ["SIM_CMD_PREFIX"] = f"prlimit --cpu={seconds}" if seconds else ""
+    results = folder / "bench" / "results.xml"
+    results.unlink(missing_ok=True)
+    try:
+        runner.test(
+            hdl_toplevel=build.top,
+            test_module=",".join(build.benches),
+            build_dir=folder / "bench",
+            results_xml=str(results),
+            seed=SEED,
+            extra_env={"EDITED_FRAMES": str(build.edited_frames), "COCOTB_MAX_FAILURES": "1"},
+            test_args=["+verilator+rand+reset+2", f"+verilator+seed+{SEED}"],
+            plusargs=[f"+mutant={mutant}"],
+            log_file=folder / "bench.txt",
+        )
+    except RuntimeError:  # It ended by a signal: the limit of processor time.
+        return False
+    return results.exists() and get_results(results)[1] == 0
+
+
+@dataclass
+class Campaign:
+    """A group's mutants and what was found about them, in a file that grows with each mutant."""
+
+    name: str
+    mutants: list[Mutant]
+
+    def __post_init__(self) -> None:
+        self.one = GROUPS[self.name]
+        self.folder = FOLDER / self.name
+        self.page = self.folder / "found.json"
+        self.netlist = digest([self.folder / "netlist.v", self.folder / "mutants.ys"])
+        self.benches = digest(sorted(BENCHES.glob("*.py")))
+        found = json.loads(self.page.read_text()) if self.page.exists() else {}
+        same = found.get("netlist") == self.netlist
+        self.verdicts: dict[str, str] = found["verdicts"] if same else {}
+        self.unproven: list[int] = found["unproven"] if same else []
+        # Other benches may find what survived.
+        if same and found["benches"] != self.benches:
+            self.verdicts = {number: verdict for number, verdict in self.verdicts.items() if verdict != ALIVE}
+
+    def open_mutants(self) -> list[Mutant]:
+        """Give those that nothing is known of."""
+        return [mutant for mutant in self.mutants if str(mutant.number) not in self.verdicts]
+
+    def note(self, mutant: Mutant, verdict: str) -> None:
+        """Keep what became of a mutant."""
+        self.verdicts[str(mutant.number)] = verdict
+        content = {"netlist": self.netlist, "benches": self.benches, "unproven": self.unproven}
+        content["verdicts"] = self.verdicts
+        self.page.write_text(json.dumps(content))
+
+    def run(self) -> None:
+        """Meet the mutants that nothing is known of with all that could find them."""
+        survivors = self.open_mutants()
+        if survivors:
+            survivors = self.meet_bench(self.one.build, "own bench", survivors)
+        if survivors and self.one.larger:
+            survivors = self.meet_bench(self.one.larger, "larger bench", survivors)
+        for mutant in survivors:
+            self.note(mutant, EQUIVALENT if self.is_equivalent(mutant) else ALIVE)
+
+    def is_equivalent(self, mutant: Mutant) -> bool:
+        """Try to prove, by induction over a few clocks with the signals of both side by side, that no output differs.
+
+        Signals that differ are taken for free in the next attempt.
+        """
+        if mutant.number in self.unproven:
+            return False
+        top, place = self.one.build.top, self.folder.relative_to(ROOT)
+        free = self.folder / "free.txt"
+        free.write_text("")
+        script = (
+            f"read_rtlil {place}/design.il; copy {top} gate; rename {top} gold; "
+            f"{mutant.command.replace(f'-module {top} ', '-module gate ')}; bwmuxmap; memory_map; opt_clean; "
+            f"equiv_make -blacklist {place}/free.txt gold gate equiv; hierarchy -top equiv; opt_merge -share_all; "
+            "opt_clean; equiv_simple -seq 3; equiv_induct -seq 3; equiv_status -assert"
+        )
+        with suppress(subprocess.TimeoutExpired):
+            for seconds in (20, 30):
+                finished = run_yosys(script, timeout=seconds)
+                if finished.returncode == 0:
+                    return True
+                differing = re.findall(r"Unproven \$equiv \S+: \\?(\S+)_gold", finished.stdout)
+                free.write_text("".join(f"{name}\n" for name in [*free.read_text().split(), *differing]))
+        self.unproven.append(mutant.number)
+        return False
+
+    def meet_bench(self, build: Build, verdict: str, mutants: Sequence[Mutant]) -> list[Mutant]:
+        """Run a bench with each of the mutants; give those that it does not find."""
+        folder = self.folder / verdict.replace(" ", "_")
+        runner = compile_bench(build, self.one, folder, self.folder / "netlist.v")
+        start = time.monotonic()
+        if not run_bench(runner, build, folder, 0):
+            sys.exit(f"{self.name}: the benches fail without a fault; see {folder / 'bench.txt'}")
+        limit = 2 + int(PATIENCE * (time.monotonic() - start))
+        survivors = []
+        for mutant in mutants:
+            if run_bench(runner, build, folder, mutant.number, limit):
+                survivors.append(mutant)
+                print(f"{self.name} {mutant.number} survives: {mutant.place} {mutant.fault}", flush=True)
+            else:
+                self.note(mutant, verdict)
+        return survivors
+
+
+def digest(paths: Sequence[Path]) -> str:
+    return hashlib.sha256(b"\0".join(path.read_bytes() for path in paths)).hexdigest()
+
+
+def page(campaigns: Sequence[Campaign]) -> str:
+    """Give the page: a row per group, and the mutants that live."""
+    counted = {each.name: Counter(each.verdicts.values()) for each in campaigns}
+    total = sum(counted.values(), Counter())
+    rows = [
+        [name, ", ".join(file.removeprefix("voxrt_") for file in GROUPS[name].files), *numbers_of(counts)]
+        for name, counts in counted.items()
+    ]
+    rows.append(["**all**", "", *(f"**{number}**" for number in numbers_of(total))])
+    killed, all_faults = sum(total[verdict] for verdict in KILLED), sum(total.values()) - total[EQUIVALENT]
+    living = [
+        [each.name, mutant.place, mutant.fault, REASONS.get(f"{each.name} {mutant.place} {mutant.fault}", "")]
+        for each in campaigns
+        for mutant in each.mutants
+        if each.verdicts[str(mutant.number)] == ALIVE
+    ]
+    return (
+        "# How good the tests of the RTL are\n\nMade by `python bench/mutation.py --write`.\n\n"
+        f"{sum(total.values())} mutants: faults of one bit at one port of one cell, which yosys `mutate` chose evenly. "
+        f"{total[EQUIVALENT]} of them change nothing, by a proof of equivalence. Of the other {all_faults}, "
+        f"**{killed / all_faults:.1%}** are found. Mutants are distributed by the places in the sources that cells "
+        f"come from; generated registers count a {REPEATED}th.\n\n"
+        + table(["group", "files", "mutants", *KILLED, EQUIVALENT, ALIVE], rows, left=2)
+        + "\n## What survives\n\n"
+        + table(["group", "place", "fault", "why no bench finds it"], living)
+    )
+
+
+def numbers_of(counts: Counter[str]) -> list[str]:
+    return [str(sum(counts.values())), *(str(counts[verdict]) for verdict in (*KILLED, EQUIVALENT, ALIVE))]
+
+
+def main() -> None:
+    parser = options_of(__doc__)
+    parser.add_argument("names", nargs="*", metavar="GROUP", help="all, if none is named; only all make the page")
+    parser.add_argument("--mutants", type=int, default=MUTANTS, help="how many, of all groups together")
+    options = parser.parse_args()
+    if unknown := [name for name in options.names if name not in GROUPS]:
+        parser.error(f"there is no group {', '.join(unknown)}; there are {', '.join(GROUPS)}")
+    prepare()
+    os.environ.setdefault("OBJCACHE", shutil.which("ccache") or "")
+    counts = shares(options.mutants)
+    campaigns = []
+    for name in options.names or GROUPS:
+        start = time.monotonic()
+        campaigns.append(Campaign(name, make_mutants(GROUPS[name], counts[name], FOLDER / name)))
+        campaigns[-1].run()
+        verdicts = ", ".join(
+            f"{count} {verdict}" for verdict, count in Counter(campaigns[-1].verdicts.values()).items()
+        )
+        print(f"{name}: {verdicts}, {time.monotonic() - start:.0f} s", flush=True)
+    if not options.names:
+        publish("mutation.md", page(campaigns), write=options.write)
+
+
+if __name__ == "__main__":
+    main()
