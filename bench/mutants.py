@@ -40,6 +40,7 @@ class Group:
     build: Build
     files: tuple[str, ...]
     larger: Build | None = None
+    proof: bool = False
 
 
 def group(build: str, *files: str, **core: int) -> Group:
@@ -48,6 +49,11 @@ def group(build: str, *files: str, **core: int) -> Group:
     parameters = {"MaxDepth": 6, "BlockBits": 8} | core
     larger = Build(CORE, parameters, ("bench_pairs",), narrow=own.narrow) if core else None
     return Group(own, tuple(f"voxrt_{name}" for name in files) or (own.top,), larger)
+
+
+def proof(top: str, **parameters: int) -> Group:
+    """Give a group of a module without a bench of its own: the proof of rtl/formal, which has these parameters."""
+    return Group(Build(top, parameters, ()), (top,), proof=True)
 
 
 PICTURES, THOROUGH = Build(CORE, LITTLE, ("bench_pairs", "bench_registers")), Build(CORE, LITTLE, ("bench_core",))
@@ -76,20 +82,11 @@ GROUPS = {
     "hit_point": group("hit_point", Lanes=1, Light=1),
     "light": group("light", Lanes=3, Light=1),
     "lane": group("lane-lit", "lane", "slot_scheduler", "next_cell", "cell_times", Lanes=1, Light=1, Mirrors=1),
-    "private_memory": group(
-        "private_memory", "private_memory", "on_chip_memory", "word_decoder", "word_encoder", Lanes=3, BlockBits=6
-    ),
-    "banked_memory": group("banked_memory", "banked_memory", "block_ram", Lanes=5, BlockBits=6, MemoryForm=1),
-    "cached_memory": group(
-        "cached_memory",
-        "cached_memory",
-        "l1_cache",
-        "l2_cache",
-        "line_queue",
-        "line_reader",
-        "miss_list",
-        "axi_read_master",
-    ),
+    "private_memory": group("private_memory", "private_memory", "on_chip_memory", "word_decoder", "word_encoder"),
+    "banked_memory": group("banked_memory", "banked_memory", "block_ram"),
+    "cached_memory": group("cached_memory", "cached_memory", "l1_cache", "l2_cache", "line_queue", "line_reader"),
+    "miss_list": proof("voxrt_miss_list", Pipes=2, PipeLanes=1, LineBits=2, Entries=2),
+    "axi_read_master": proof("voxrt_axi_read_master", UnderWay=2, TimeoutBits=3),
     "strip_generator": group("strip_generator", "strip_generator", "strip_place"),
     "strip_buffer": group("strip_buffer"),
     "lod": group("lod", "lod"),
@@ -226,15 +223,20 @@ ARRAY = re.compile(r"^\s*(input|output)\b.*?(\w+)\s*\[[^\]]+\],?\s*(?://.*)?$")
 PORT = re.compile(r"^\s*(?:input|output)\b.*?(\w+)\s*(?:\[[^\]]+\])?,?\s*(?://.*)?$")
 
 
-def wrapper(one: Group) -> str:
-    """Give the module in its own name, ports and parameters, with the netlist inside: the bench sees no difference."""
+def wrapper(one: Group, mutant: int | None = None) -> str:
+    """Give the module in its own name, ports and parameters, with the netlist inside: the bench sees no difference.
+
+    It has one mutant, or the one that the simulation's plusarg names.
+    """
     (source,) = [path for path in list_sources() if path.stem == one.build.top]
     head = re.search(rf"^module {one.build.top}\b.*?^\);", source.read_text(), re.MULTILINE | re.DOTALL)
     assert head
     lines = [
         head.group(),
         f"  logic [{CHOICE_BITS - 1}:0] mutant;",
-        '  initial if (!$value$plusargs("mutant=%d", mutant)) mutant = 0;',
+        '  initial if (!$value$plusargs("mutant=%d", mutant)) mutant = 0;'
+        if mutant is None
+        else f"  assign mutant = {mutant};",
     ]
     pins = [".mutant(mutant)"]
     ports = head.group().rpartition("\n) (\n")[2] if ") (" in head.group() else head.group()

@@ -23,9 +23,12 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from mutants import FOLDER, GROUPS, REPEATED, Mutant, compile_bench, make_mutants, run_yosys, shares
+from mutants import FOLDER, GROUPS, REPEATED, Mutant, compile_bench, make_mutants, run_yosys, shares, wrapper
 from report import ROOT, options_of, publish, table
 from run import SEED, get_results, prepare
+
+sys.path.insert(0, str(ROOT / "rtl" / "formal"))
+import prove
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -99,7 +102,9 @@ class Campaign:
     def run(self) -> None:
         """Meet the mutants that nothing is known of with all that could find them."""
         survivors = self.open_mutants()
-        if survivors:
+        if survivors and self.one.proof:
+            survivors = self.meet_proof(survivors)
+        if survivors and self.one.build.benches:
             survivors = self.meet_bench(self.one.build, "own bench", survivors)
         if survivors and self.one.larger:
             survivors = self.meet_bench(self.one.larger, "larger bench", survivors)
@@ -131,6 +136,24 @@ class Campaign:
                 free.write_text("".join(f"{name}\n" for name in [*free.read_text().split(), *differing]))
         self.unproven.append(mutant.number)
         return False
+
+    def meet_proof(self, mutants: Sequence[Mutant]) -> list[Mutant]:
+        """Prove the properties of the module with each of the mutants; give those with which they hold."""
+        top = self.one.build.top
+        changed, survivors = self.folder / f"{top}.sv", []
+        for mutant in [None, *mutants]:
+            number = mutant.number if mutant else 0
+            changed.write_text(wrapper(self.one, number) + (self.folder / "netlist.v").read_text())
+            holds = all(prove.run(top, *job, changed) for job in (prove.PROOFS[top], ("cover", prove.COVERED)))
+            if mutant is None:
+                if not holds:
+                    sys.exit(f"{self.name}: the proof fails without a fault")
+            elif holds:
+                survivors.append(mutant)
+                print(f"{self.name} {number} survives: {mutant.place} {mutant.fault}", flush=True)
+            else:
+                self.note(mutant, "proof")
+        return survivors
 
     def meet_bench(self, build: Build, verdict: str, mutants: Sequence[Mutant]) -> list[Mutant]:
         """Run a bench with each of the mutants; give those that it does not find."""

@@ -98,6 +98,21 @@ class Memory:
         drive(self.dut, read_i=0)
         return got
 
+    async def ask(self, lane, block):
+        """Let one ray read once; tell whether its word came, within the turn of its slot."""
+        octant = random.randrange(8)
+        addresses = [block << 3 | octant] * self.lanes
+        drive(self.dut, read_i=1 << lane, address_i=addresses)
+        await self.clock()
+        drive(self.dut, read_i=0)
+        for _ in range(CLOCKS):
+            await self.clock()
+        came = bool(self.acks)
+        assert not came or self.words[lane] == encoded(kept(self.bus.words[1 + 8 * block + octant]))
+        for _ in range(SLOTS - CLOCKS - 1):
+            await self.clock()
+        return came
+
     async def drain(self, limit=40000, *, check=True):
         for _ in range(limit // 60):
             if all(place is None for lane in self.requests for place in lane):
@@ -156,6 +171,26 @@ async def without_a_flush_lines_stay(dut):
         lines = len(memory.bus.addresses) - before
         await memory.frame()
     assert lines == 0
+
+
+@cocotb.test()
+async def the_least_recently_used_line_goes(dut):
+    """Answer a lane at its first question while its line is one of the last four of the set."""
+    memory = Memory(dut)
+    await memory.begin()
+    await memory.frame()
+    used = [[[], []] for _ in range(memory.lanes)]
+    for _ in range(400):
+        lane, block = random.randrange(memory.lanes), random.randrange(12)
+        recent, questions = used[lane][block % 2], 1
+        while not await memory.ask(lane, block):
+            questions += 1
+            assert questions < 100
+        assert (questions == 1) == (block in recent)
+        if block in recent:
+            recent.remove(block)
+        recent.append(block)
+        del recent[:-4]
 
 
 @cocotb.test()

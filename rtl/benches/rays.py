@@ -57,8 +57,10 @@ def some_direction():
 
 
 def aimed_direction(position, side):
-    """Make a direction from a position, 1/16 voxel, to a random point of the world, short or long."""
-    way = [random.randint(0, 16 * side) - place for place in position]
+    """Make a direction from a position, 1/16 voxel, to a point in the world, or near its planes and edges."""
+    near = random.randint(-1, 1)
+    aims = [random.choice([near, 16 * side + near, random.randint(0, 16 * side)]) for _ in range(3)]
+    way = [aim - place for aim, place in zip(aims, position, strict=True)]
     longest = max(map(abs, way)) or 1
     scale = random.choice([1, (OVERFLOW - 1) // longest, random.randint(1, (OVERFLOW - 1) // longest)])
     return [scale * step for step in way]
