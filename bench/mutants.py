@@ -56,7 +56,7 @@ def proof(top: str, **parameters: int) -> Group:
     return Group(Build(top, parameters, ()), (top,), proof=True)
 
 
-PICTURES, THOROUGH = Build(CORE, LITTLE, ("bench_pairs", "bench_registers")), Build(CORE, LITTLE, ("bench_core",))
+WHOLE_CORE = Build(CORE, LITTLE, ("bench_pairs", "bench_registers"))
 GROUPS = {
     "fifo": group("fifo"),
     "stream_register": group("stream_register-cut"),
@@ -91,11 +91,10 @@ GROUPS = {
     "strip_buffer": group("strip_buffer"),
     "lod": group("lod", "lod"),
     "core": Group(
-        PICTURES,
+        WHOLE_CORE,
         tuple(f"voxrt_{name}" for name in ("core", "rtu", "rays", "frame", "counters", "pixels", "buffered_lane")),
-        THOROUGH,
     ),
-    "registers": Group(PICTURES, ("voxrt_registers",), THOROUGH),
+    "registers": Group(WHOLE_CORE, ("voxrt_registers",)),
 }
 
 

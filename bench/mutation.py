@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
     from run import Build
 
-BENCHES = ROOT / "rtl" / "benches"
+BENCHES, PROOFS = ROOT / "rtl" / "benches", ROOT / "rtl" / "formal"
 MUTANTS = 1000
 PATIENCE = 4  # A bench that takes so many times the processor time that it takes without a fault has found it.
 KILLED = ("own bench", "larger bench", "proof")
@@ -79,7 +79,7 @@ class Campaign:
         self.folder = FOLDER / self.name
         self.page = self.folder / "found.json"
         self.netlist = digest([self.folder / "netlist.v", self.folder / "mutants.ys"])
-        self.benches = digest(sorted(BENCHES.glob("*.py")))
+        self.benches = digest(sorted([*BENCHES.glob("*.py"), *PROOFS.iterdir()]))
         found = json.loads(self.page.read_text()) if self.page.exists() else {}
         same = found.get("netlist") == self.netlist
         self.verdicts: dict[str, str] = found["verdicts"] if same else {}
@@ -174,7 +174,7 @@ class Campaign:
 
 
 def digest(paths: Sequence[Path]) -> str:
-    return hashlib.sha256(b"\0".join(path.read_bytes() for path in paths)).hexdigest()
+    return hashlib.sha256(b"\0".join(path.read_bytes() for path in paths if path.is_file())).hexdigest()
 
 
 def page(campaigns: Sequence[Campaign]) -> str:

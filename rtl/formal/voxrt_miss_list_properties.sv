@@ -93,6 +93,10 @@ module voxrt_miss_list_properties #(
         if (come_q[2] && come_line_q[2] == target) assert (gets[p] == waits_q[p]);
         // What is waited for is under way.
         if (waits_q[p]) assert (!empty_o);
+        if (waits_q[p] && !on_way_q) assert (fetch_valid_o);
+        // One that misses alone enters an empty list, and joins the other that waits for its line.
+        if (miss_i[p] && !miss_i[1-p] && empty_o) assert (accepted_o[p]);
+        if (miss_i[p] && line[p] == target && waits_q[1-p]) assert (accepted_o[p]);
       end
     end
     if (started_q && rst_ni && come_i) assert (come_way_o == 2'(come_line_o));
