@@ -94,7 +94,7 @@ GROUPS = {
         WHOLE_CORE,
         tuple(f"voxrt_{name}" for name in ("core", "rtu", "rays", "frame", "counters", "pixels", "buffered_lane")),
     ),
-    "registers": Group(WHOLE_CORE, ("voxrt_registers",)),
+    "registers": Group(WHOLE_CORE._replace(benches=("bench_registers", "bench_pairs")), ("voxrt_registers",)),
 }
 
 

@@ -1,7 +1,7 @@
 """Mutation: how many small faults of the core the benches find.
 
-Usage: ``python bench/mutation.py [--write] [--mutants N] [GROUP ...]``. ``--write`` writes
-``bench/results/mutation.md`` too. Needs the packages of ``make .venv/.hardware``.
+Usage: ``python bench/mutation.py [--write] [--mutants N] [--minutes M] [GROUP ...]``. ``--write``
+writes ``bench/results/mutation.md`` too. Needs the packages of ``make .venv/.hardware``.
 
 Each mutant (bench/mutants.py) meets the bench of its module until the first failure. What survives meets a larger
 bench, then a proof that it changes nothing. What was found is in ``build/mutation``: a campaign that was interrupted
@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 import os
 import re
 import shutil
@@ -40,7 +41,7 @@ BENCHES, PROOFS = ROOT / "rtl" / "benches", ROOT / "rtl" / "formal"
 MUTANTS = 1000
 PATIENCE = 4  # A bench that takes so many times the processor time that it takes without a fault has found it.
 KILLED = ("own bench", "larger bench", "proof")
-ALIVE, EQUIVALENT = "alive", "equivalent"
+ALIVE, EQUIVALENT, NOT_MET = "alive", "equivalent", "not met"
 # Survivors that were looked at: group, place and fault, and why no bench finds it.
 REASONS: dict[str, str] = {}
 
@@ -73,6 +74,7 @@ class Campaign:
 
     name: str
     mutants: list[Mutant]
+    deadline: float = math.inf  # of time.monotonic(): no more benches and proofs after it
 
     def __post_init__(self) -> None:
         self.one = GROUPS[self.name]
@@ -84,19 +86,22 @@ class Campaign:
         same = found.get("netlist") == self.netlist
         self.verdicts: dict[str, str] = found["verdicts"] if same else {}
         self.unproven: list[int] = found["unproven"] if same else []
-        # Other benches may find what survived.
-        if same and found["benches"] != self.benches:
-            self.verdicts = {number: verdict for number, verdict in self.verdicts.items() if verdict != ALIVE}
+        self.survived: str = found["survived"] if same else ""  # The benches that all survivors met.
 
     def open_mutants(self) -> list[Mutant]:
-        """Give those that nothing is known of."""
-        return [mutant for mutant in self.mutants if str(mutant.number) not in self.verdicts]
+        """Give those that nothing is known of, and those that survived other benches."""
+        closed = {EQUIVALENT, *KILLED} | ({ALIVE} if self.survived == self.benches else set())
+        return [mutant for mutant in self.mutants if self.verdicts.get(str(mutant.number)) not in closed]
 
     def note(self, mutant: Mutant, verdict: str) -> None:
         """Keep what became of a mutant."""
         self.verdicts[str(mutant.number)] = verdict
-        content = {"netlist": self.netlist, "benches": self.benches, "unproven": self.unproven}
-        content["verdicts"] = self.verdicts
+        self.save()
+
+    def save(self) -> None:
+        """Keep all that was found."""
+        names = ("netlist", "survived", "unproven", "verdicts")
+        content = dict(zip(names, (self.netlist, self.survived, self.unproven, self.verdicts), strict=True))
         self.page.write_text(json.dumps(content))
 
     def run(self) -> None:
@@ -106,10 +111,17 @@ class Campaign:
             survivors = self.meet_proof(survivors)
         if survivors and self.one.build.benches:
             survivors = self.meet_bench(self.one.build, "own bench", survivors)
-        if survivors and self.one.larger:
+        if survivors and self.one.larger and self.has_time():
             survivors = self.meet_bench(self.one.larger, "larger bench", survivors)
         for mutant in survivors:
-            self.note(mutant, EQUIVALENT if self.is_equivalent(mutant) else ALIVE)
+            self.note(mutant, EQUIVALENT if self.has_time() and self.is_equivalent(mutant) else ALIVE)
+        if self.has_time():
+            self.survived = self.benches
+            self.save()
+
+    def has_time(self) -> bool:
+        """Tell whether the deadline is to come."""
+        return time.monotonic() < self.deadline
 
     def is_equivalent(self, mutant: Mutant) -> bool:
         """Try to prove, by induction over a few clocks with the signals of both side by side, that no output differs.
@@ -142,6 +154,8 @@ class Campaign:
         top = self.one.build.top
         changed, survivors = self.folder / f"{top}.sv", []
         for mutant in [None, *mutants]:
+            if not self.has_time():
+                break
             number = mutant.number if mutant else 0
             changed.write_text(wrapper(self.one, number) + (self.folder / "netlist.v").read_text())
             holds = all(prove.run(top, *job, changed) for job in (prove.PROOFS[top], ("cover", prove.COVERED)))
@@ -164,7 +178,10 @@ class Campaign:
             sys.exit(f"{self.name}: the benches fail without a fault; see {folder / 'bench.txt'}")
         limit = 2 + int(PATIENCE * (time.monotonic() - start))
         survivors = []
-        for mutant in mutants:
+        for number, mutant in enumerate(mutants):
+            if not self.has_time():
+                # Those that met another bench survived it; of the others nothing is known.
+                return survivors + list(mutants[number:] if verdict == "larger bench" else ())
             if run_bench(runner, build, folder, mutant.number, limit):
                 survivors.append(mutant)
                 print(f"{self.name} {mutant.number} survives: {mutant.place} {mutant.fault}", flush=True)
@@ -179,19 +196,25 @@ def digest(paths: Sequence[Path]) -> str:
 
 def page(campaigns: Sequence[Campaign]) -> str:
     """Give the page: a row per group, and the mutants that live."""
-    counted = {each.name: Counter(each.verdicts.values()) for each in campaigns}
+    counted = {
+        each.name: Counter(each.verdicts.get(str(mutant.number), NOT_MET) for mutant in each.mutants)
+        for each in campaigns
+    }
     total = sum(counted.values(), Counter())
     rows = [
         [name, ", ".join(file.removeprefix("voxrt_") for file in GROUPS[name].files), *numbers_of(counts)]
         for name, counts in counted.items()
     ]
     rows.append(["**all**", "", *(f"**{number}**" for number in numbers_of(total))])
-    killed, all_faults = sum(total[verdict] for verdict in KILLED), sum(total.values()) - total[EQUIVALENT]
+    killed, all_faults = (
+        sum(total[verdict] for verdict in KILLED),
+        sum(total.values()) - total[EQUIVALENT] - total[NOT_MET],
+    )
     living = [
         [each.name, mutant.place, mutant.fault, REASONS.get(f"{each.name} {mutant.place} {mutant.fault}", "")]
         for each in campaigns
         for mutant in each.mutants
-        if each.verdicts[str(mutant.number)] == ALIVE
+        if each.verdicts.get(str(mutant.number)) == ALIVE
     ]
     return (
         "# How good the tests of the RTL are\n\nMade by `python bench/mutation.py --write`.\n\n"
@@ -199,21 +222,23 @@ def page(campaigns: Sequence[Campaign]) -> str:
         f"{total[EQUIVALENT]} of them change nothing, by a proof of equivalence. Of the other {all_faults}, "
         f"**{killed / all_faults:.1%}** are found. Mutants are distributed by the places in the sources that cells "
         f"come from; generated registers count a {REPEATED}th.\n\n"
-        + table(["group", "files", "mutants", *KILLED, EQUIVALENT, ALIVE], rows, left=2)
+        + table(["group", "files", "mutants", *KILLED, EQUIVALENT, ALIVE, NOT_MET], rows, left=2)
         + "\n## What survives\n\n"
         + table(["group", "place", "fault", "why no bench finds it"], living)
     )
 
 
 def numbers_of(counts: Counter[str]) -> list[str]:
-    return [str(sum(counts.values())), *(str(counts[verdict]) for verdict in (*KILLED, EQUIVALENT, ALIVE))]
+    return [str(sum(counts.values())), *(str(counts[verdict]) for verdict in (*KILLED, EQUIVALENT, ALIVE, NOT_MET))]
 
 
 def main() -> None:
     parser = options_of(__doc__)
     parser.add_argument("names", nargs="*", metavar="GROUP", help="all, if none is named; only all make the page")
     parser.add_argument("--mutants", type=int, default=MUTANTS, help="how many, of all groups together")
+    parser.add_argument("--minutes", type=float, default=math.inf, help="begin no bench and no proof after so many")
     options = parser.parse_args()
+    deadline = time.monotonic() + 60 * options.minutes
     if unknown := [name for name in options.names if name not in GROUPS]:
         parser.error(f"there is no group {', '.join(unknown)}; there are {', '.join(GROUPS)}")
     prepare()
@@ -222,7 +247,7 @@ def main() -> None:
     campaigns = []
     for name in options.names or GROUPS:
         start = time.monotonic()
-        campaigns.append(Campaign(name, make_mutants(GROUPS[name], counts[name], FOLDER / name)))
+        campaigns.append(Campaign(name, make_mutants(GROUPS[name], counts[name], FOLDER / name), deadline))
         campaigns[-1].run()
         verdicts = ", ".join(
             f"{count} {verdict}" for verdict, count in Counter(campaigns[-1].verdicts.values()).items()
