@@ -7,6 +7,7 @@ module of the top's own name, ports and parameters this netlist stands where the
 
 from __future__ import annotations
 
+import hashlib
 import json
 import re
 import subprocess
@@ -159,7 +160,12 @@ def count_cells(name: str) -> int:
 
 def shares(mutants: int) -> dict[str, int]:
     """Distribute mutants among the groups by their cells."""
-    cells = {name: count_cells(name) for name in GROUPS}
+    sources = b"\0".join(path.read_bytes() for path in list_sources()) + repr(GROUPS).encode()
+    page, now = FOLDER / "cells.json", hashlib.sha256(sources).hexdigest()
+    before, cells = json.loads(page.read_text()) if page.exists() else ("", {})
+    if before != now:
+        cells = {name: count_cells(name) for name in GROUPS}
+        page.write_text(json.dumps([now, cells]))
     shares = {name: max(FEWEST, mutants * count // sum(cells.values())) for name, count in cells.items()}
     largest = max(shares, key=lambda name: shares[name])
     shares[largest] += mutants - sum(shares.values())
