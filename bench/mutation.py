@@ -107,7 +107,7 @@ class Campaign:
 
     def run(self) -> None:
         """Meet the mutants that nothing is known of with all that could find them."""
-        survivors = self.open_mutants()
+        survivors = self.open_mutants() if self.has_time() else []
         if survivors and self.one.proof:
             survivors = self.meet_proof(survivors)
         if survivors and self.one.build.benches:

@@ -29,6 +29,7 @@ class Memory:
         self.clock_number = 0
         self.got = 0
         self.answers = []
+        self.counts = [0, 0, 0]  # Questions, those for lines, lines from the bus.
 
     def fill(self):
         self.bus.words = [some_word() for _ in range(1 + 8 * BLOCKS)]
@@ -46,7 +47,9 @@ class Memory:
         self.ready = int(self.dut.ready_o.value)
         self.acks = self.dut.ack_o.value.to_unsigned()
         self.words = [self.dut.word_o[i].value.to_unsigned() for i in range(self.lanes)]
-        self.faults = self.dut.events_o.value.to_unsigned() >> 17
+        events = self.dut.events_o.value.to_unsigned()
+        self.faults = events >> 17
+        self.counts = [count + more for count, more in zip(self.counts, counts_of(events), strict=True)]
         await RisingEdge(self.dut.clk_i)
         self.clock_number += 1
 
@@ -121,6 +124,10 @@ class Memory:
         raise AssertionError("a ray waits for ever")
 
 
+def counts_of(events):
+    return events >> 9 & 0xFF, events >> 1 & 0xFF, events & 1
+
+
 def kept_here(word):
     """Give a word as lanes read it; the bench on chip has as many blocks."""
     return kept(word)
@@ -179,6 +186,8 @@ async def the_least_recently_used_line_goes(dut):
     memory = Memory(dut)
     await memory.begin()
     await memory.frame()
+    memory.counts, lines_before = [0, 0, 0], len(memory.bus.addresses)
+    asked = misses = 0
     used = [[[], []] for _ in range(memory.lanes)]
     for _ in range(400):
         lane, block = random.randrange(memory.lanes), random.randrange(12)
@@ -187,10 +196,12 @@ async def the_least_recently_used_line_goes(dut):
             questions += 1
             assert questions < 100
         assert (questions == 1) == (block in recent)
+        asked, misses = asked + questions, misses + (questions > 1)
         if block in recent:
             recent.remove(block)
         recent.append(block)
         del recent[:-4]
+    assert memory.counts == [asked, misses, len(memory.bus.addresses) - lines_before]
 
 
 @cocotb.test()
