@@ -57,7 +57,7 @@ def proof(top: str, **parameters: int) -> Group:
     return Group(Build(top, parameters, ()), (top,), proof=True)
 
 
-WHOLE_CORE = Build(CORE, LITTLE, ("bench_pairs", "bench_registers"))
+WHOLE_CORE, THOROUGH = Build(CORE, LITTLE, ("bench_pairs", "bench_registers")), Build(CORE, LITTLE, ("bench_core",))
 GROUPS = {
     "fifo": group("fifo"),
     "stream_register": group("stream_register-cut"),
@@ -94,8 +94,9 @@ GROUPS = {
     "core": Group(
         WHOLE_CORE,
         tuple(f"voxrt_{name}" for name in ("core", "rtu", "rays", "frame", "counters", "pixels", "buffered_lane")),
+        THOROUGH,
     ),
-    "registers": Group(WHOLE_CORE._replace(benches=("bench_registers", "bench_pairs")), ("voxrt_registers",)),
+    "registers": Group(WHOLE_CORE._replace(benches=("bench_registers", "bench_pairs")), ("voxrt_registers",), THOROUGH),
 }
 
 

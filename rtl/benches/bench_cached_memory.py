@@ -187,7 +187,7 @@ async def the_least_recently_used_line_goes(dut):
     await memory.begin()
     await memory.frame()
     memory.counts, lines_before = [0, 0, 0], len(memory.bus.addresses)
-    asked = misses = 0
+    total = misses = 0
     used = [[[], []] for _ in range(memory.lanes)]
     for _ in range(400):
         lane, block = random.randrange(memory.lanes), random.randrange(12)
@@ -196,12 +196,12 @@ async def the_least_recently_used_line_goes(dut):
             questions += 1
             assert questions < 100
         assert (questions == 1) == (block in recent)
-        asked, misses = asked + questions, misses + (questions > 1)
+        total, misses = total + questions, misses + (questions > 1)
         if block in recent:
             recent.remove(block)
         recent.append(block)
         del recent[:-4]
-    assert memory.counts == [asked, misses, len(memory.bus.addresses) - lines_before]
+    assert memory.counts == [total, misses, len(memory.bus.addresses) - lines_before]
 
 
 @cocotb.test()
