@@ -213,6 +213,7 @@ class Campaign:
                 return survivors + list(mutants[number:] if verdict == "larger bench" else ())
             if run_bench(runner, build, folder, mutant.number, limit):
                 survivors.append(mutant)
+                self.note(mutant, ALIVE)  # until something else finds it, were the campaign interrupted
                 print(f"{self.name} {mutant.number} survives: {mutant.place} {mutant.fault}", flush=True)
             else:
                 self.note(mutant, verdict)
@@ -241,10 +242,9 @@ def page(campaigns: Sequence[Campaign]) -> str:
         for name, counts in counted.items()
     ]
     rows.append(["**all**", "", *(f"**{number}**" for number in numbers_of(total))])
-    killed, all_faults = (
-        sum(total[verdict] for verdict in KILLED),
-        sum(total.values()) - total[EQUIVALENT] - total[NOT_MET],
-    )
+    # A group that was interrupted says nothing: what is found ends soon, and what survives takes longest.
+    whole = sum((counts for counts in counted.values() if not counts[NOT_MET]), Counter())
+    killed, faults = sum(whole[verdict] for verdict in KILLED), sum(whole.values()) - whole[EQUIVALENT]
     living = [
         [each.name, mutant.place, mutant.fault, reason_of(each, mutant)]
         for each in campaigns
@@ -254,9 +254,9 @@ def page(campaigns: Sequence[Campaign]) -> str:
     return (
         "# How good the tests of the RTL are\n\nMade by `python bench/mutation.py --write`.\n\n"
         f"{sum(total.values())} mutants: faults of one bit at one port of one cell, which yosys `mutate` chose evenly. "
-        f"{total[EQUIVALENT]} of them change nothing, by a proof of equivalence. Of the other {all_faults}, "
-        f"**{killed / all_faults:.1%}** are found. Mutants are distributed by the places in the sources that cells "
-        f"come from; generated registers count a {REPEATED}th."
+        f"Mutants are distributed by the places in the sources that cells come from; of generated registers one place "
+        f"in {REPEATED} counts. In the groups of which all were met, {whole[EQUIVALENT]} change nothing, by a proof of "
+        f"equivalence; of the other {faults}, {killed} are found: **{killed / max(faults, 1):.1%}**."
         + (f" **{total[NOT_MET]} were not met yet**: the campaign goes on where it stopped." if total[NOT_MET] else "")
         + "\n\n"
         + table(["group", "files", "mutants", *KILLED, EQUIVALENT, ALIVE, NOT_MET], rows, left=2)
