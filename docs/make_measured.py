@@ -14,6 +14,7 @@ TITLES = {
     "coverage": "Coverage",
     "demo": "Demo",
     "interior": "Interior",
+    "mutation": "Mutation",
     "peers": "Other voxelizers",
     "rtl": "Cycles per pixel",
     "soak": "Soak",

@@ -50,16 +50,29 @@ def some_pixel(dut, side, light, shading):
         detail = packed((MEAN, 2), (sums, payload - 5), (count, 5))
         return item | {"detail_i": detail}, (pixel, 1, 1, Fraction(1, count), sums)
     place, mirrored = some_place(side, face), random.randrange(8)
-    direction = [2 * at - own for at, own in zip(light, lit_point(place, mirrored, face, side), strict=True)]
+    direction = direction_to(light, place, mirrored, face, side)
     lit = item["lit_i"] = lit and any(direction)
     part = Fraction(ambient, 256)
     if flat or faces:
         own = of_face(flat, faces, face, mirrored >> face & 1)
         part = own if lit else own * part
     elif lit:
-        part = max(part, Fraction(direction[face] ** 2, sum(d * d for d in direction)))
-    detail = packed((LIGHT, 2), (0, payload - 3 - 3 * PLACE), (mirrored, 3), *((p, PLACE) for p in reversed(place)))
-    return item | {"detail_i": detail}, (pixel, 1, 0, part)
+        part = max(part, share_of(direction, face))
+    return item | {"detail_i": lit_detail(dut, place, mirrored)}, (pixel, 1, 0, part)
+
+
+def direction_to(light, place, mirrored, face, side):
+    """Give the direction from a lit point to the light, 1/32 voxel."""
+    return [2 * at - own for at, own in zip(light, lit_point(place, mirrored, face, side), strict=True)]
+
+
+def share_of(direction, face):
+    return Fraction(direction[face] ** 2, sum(d * d for d in direction))
+
+
+def lit_detail(dut, place, mirrored):
+    payload = len(dut.detail_i) - 2
+    return packed((LIGHT, 2), (0, payload - 3 - 3 * PLACE), (mirrored, 3), *((p, PLACE) for p in reversed(place)))
 
 
 def mirrored_at(dut):
@@ -103,6 +116,24 @@ async def fractions(dut, sending, taking):
         items, wanted = zip(*(make() for _ in range(40)), strict=True)
         got = await with_timeout(exchange(dut, items, lambda: seen(dut), sending, taking), 1, "ms")
         assert got == list(wanted)
+
+
+@cocotb.test()
+async def nearly_the_ambient_light(dut):
+    """Compare the light with the ambient light where they are as near as can be: close to the light and far away."""
+    await start(dut, valid_i=0, ready_i=0)
+    for _ in range(400 * int(dut.Light.value)):
+        side, face, mirrored = 1 << random.randint(1, DEPTH), random.randrange(3), random.randrange(8)
+        place, reach = some_place(side, face), 1 << random.randint(1, 17)
+        point = lit_point(place, mirrored, face, side)
+        light = [own // 2 + random.randint(-reach, reach) for own in point]
+        direction = direction_to(light, place, mirrored, face, side)
+        nearest = round(256 * share_of(direction, face)) + random.randint(-1, 1) if any(direction) else 0
+        ambient = min(max(nearest, 0), 255)
+        drive(dut, side_i=side, light_i=packed_array(light, 32), shading_i=SHADING.pack(ambient=ambient))
+        item = {"pixel_i": face, "lit_i": any(direction), "detail_i": lit_detail(dut, place, mirrored)}
+        part = max(Fraction(ambient, 256), share_of(direction, face) if any(direction) else Fraction(0))
+        assert await exchange(dut, [item], lambda: seen(dut), "always", "always") == [(face, 1, 0, part)]
 
 
 @cocotb.test()

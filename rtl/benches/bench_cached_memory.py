@@ -29,6 +29,7 @@ class Memory:
         self.clock_number = 0
         self.got = 0
         self.answers = []
+        self.counts = [0, 0, 0]  # Questions, those for lines, lines from the bus.
 
     def fill(self):
         self.bus.words = [some_word() for _ in range(1 + 8 * BLOCKS)]
@@ -46,7 +47,9 @@ class Memory:
         self.ready = int(self.dut.ready_o.value)
         self.acks = self.dut.ack_o.value.to_unsigned()
         self.words = [self.dut.word_o[i].value.to_unsigned() for i in range(self.lanes)]
-        self.faults = self.dut.events_o.value.to_unsigned() >> 17
+        events = self.dut.events_o.value.to_unsigned()
+        self.faults = events >> 17
+        self.counts = [count + more for count, more in zip(self.counts, counts_of(events), strict=True)]
         await RisingEdge(self.dut.clk_i)
         self.clock_number += 1
 
@@ -98,12 +101,31 @@ class Memory:
         drive(self.dut, read_i=0)
         return got
 
+    async def ask(self, lane, block):
+        """Let one ray read once; tell whether its word came, within the turn of its slot."""
+        octant = random.randrange(8)
+        addresses = [block << 3 | octant] * self.lanes
+        drive(self.dut, read_i=1 << lane, address_i=addresses)
+        await self.clock()
+        drive(self.dut, read_i=0)
+        for _ in range(CLOCKS):
+            await self.clock()
+        came = bool(self.acks)
+        assert not came or self.words[lane] == encoded(kept(self.bus.words[1 + 8 * block + octant]))
+        for _ in range(SLOTS - CLOCKS - 1):
+            await self.clock()
+        return came
+
     async def drain(self, limit=40000, *, check=True):
         for _ in range(limit // 60):
             if all(place is None for lane in self.requests for place in lane):
                 return
             await self.read(60, stop=True, check=check)
         raise AssertionError("a ray waits for ever")
+
+
+def counts_of(events):
+    return events >> 9 & 0xFF, events >> 1 & 0xFF, events & 1
 
 
 def kept_here(word):
@@ -156,6 +178,30 @@ async def without_a_flush_lines_stay(dut):
         lines = len(memory.bus.addresses) - before
         await memory.frame()
     assert lines == 0
+
+
+@cocotb.test()
+async def the_least_recently_used_line_goes(dut):
+    """Answer a lane at its first question while its line is one of the last four of the set."""
+    memory = Memory(dut)
+    await memory.begin()
+    await memory.frame()
+    memory.counts, lines_before = [0, 0, 0], len(memory.bus.addresses)
+    total = misses = 0
+    used = [[[], []] for _ in range(memory.lanes)]
+    for _ in range(400):
+        lane, block = random.randrange(memory.lanes), random.randrange(12)
+        recent, questions = used[lane][block % 2], 1
+        while not await memory.ask(lane, block):
+            questions += 1
+            assert questions < 100
+        assert (questions == 1) == (block in recent)
+        total, misses = total + questions, misses + (questions > 1)
+        if block in recent:
+            recent.remove(block)
+        recent.append(block)
+        del recent[:-4]
+    assert memory.counts == [total, misses, len(memory.bus.addresses) - lines_before]
 
 
 @cocotb.test()

@@ -20,11 +20,11 @@ from rays import ray_of, some_direction
 from streams import PACES, drive, pace, reset, start
 from structs import HIT_POINT, LIGHT_PLANES, MATERIAL_WRITE, RAY, RESULT, ROW_FREE, SHADING, WEIGHTS_WRITE, WORLD
 
-LEAF, DEPTH, ROWS = 1 << 9, 3, 32
-SIDE = 1 << DEPTH
+LEAF = 1 << 9
 MAX_DEPTH, PLACE, SUM, COUNT = 6, 10, 12, 5
 MATERIALS = (5, 9, 255)
 SHADOW_RAYS = 3
+SMALL = 8  # Voxels per side of most worlds.
 NOTHING = {"weights_write_i": 0, "ray_valid_i": 0, "mem_ack_i": 0, "allocate_ready_i": 0, "material_write_i": 0}
 
 
@@ -54,13 +54,14 @@ def inputs(ray, row, tag, *, shadow):
 class Surroundings:
     """Memory, reorder buffer, free rows, queues of rays and the maker of shadow rays."""
 
-    def __init__(self, dut, words, shader, rays, hurry=0.1):
+    def __init__(self, dut, world, shader, rays, *, hurry=0.1):
+        self.side, words = world
         self.dut, self.shader, self.hurry = dut, shader, hurry
         self.words = [encoded(int(word)) for word in words]
         self.answers = deque([None] * (int(dut.MemoryClocks.value) - 1))
         self.coming, self.ordered, self.credits = deque((ray, 0) for ray in rays), deque(), SHADOW_RAYS
         self.rays, self.shadow_rays = deque(), deque()  # That wait.
-        self.free_rows = list(range(ROWS))
+        self.free_rows = list(range(1 << len(dut.ray_row_i)))
         self.offers = False
         self.stored, self.lit = [], {}
         self.errors = 0
@@ -133,9 +134,9 @@ class Surroundings:
             tag, face, mirrored, place = hit["tag"], hit["face"], hit["mirrored"], hit["point"]
             assert self.stored[tag] % 4 == face
             assert hit_point(self.stored[tag]) == (place, mirrored)
-            point = lit_point(place, mirrored, face, SIDE)
+            point = lit_point(place, mirrored, face, self.side)
             direction = [2 * at - own for at, own in zip(self.shader.light, point, strict=True)]
-            self.ordered.append((ray_of(point, direction, SIDE, unit=32, inside=True), tag))
+            self.ordered.append((ray_of(point, direction, self.side, unit=32, inside=True), tag))
 
     def answer(self, acknowledges):
         """Give a word of before, or none."""
@@ -162,7 +163,7 @@ class Surroundings:
         assert kind == LIGHT
         part = Fraction(self.shader.ambient, 256)
         if self.lit[tag]:
-            point = lit_point(*hit_point(stored), face, SIDE)
+            point = lit_point(*hit_point(stored), face, self.side)
             direction = [2 * at - own for at, own in zip(self.shader.light, point, strict=True)]
             square, total = direction[face] ** 2, sum(d * d for d in direction)
             part = max(part, Fraction(square, total))
@@ -194,23 +195,36 @@ def hit_point(stored):
 def some_world(leaves):
     """Make a world; where the lane goes into a root that is a leaf, sometimes such a one."""
     if leaves and random.random() < 0.1:
-        return np.full((SIDE,) * 3, random.choice([0, *MATERIALS]), np.uint8)
+        return np.full((SMALL,) * 3, random.choice([0, *MATERIALS]), np.uint8)
     materials = [0] * random.choice([2, 6, 12, 40]) + [*MATERIALS]
-    return np.random.default_rng(random.randrange(1 << 30)).choice(materials, (SIDE,) * 3).astype(np.uint8)
+    return np.random.default_rng(random.randrange(1 << 30)).choice(materials, (SMALL,) * 3).astype(np.uint8)
 
 
-def some_place():
+def deep_world():
+    """Make a world of all levels: large octants, and some voxels that differ from them."""
+    chance, large = np.random.default_rng(random.randrange(1 << 30)), 4
+    octants = chance.choice([0] * random.choice([6, 20]) + [*MATERIALS], (large,) * 3).astype(np.uint8)
+    voxels = np.kron(octants, np.ones(((1 << MAX_DEPTH) // large,) * 3, np.uint8))
+    for place in chance.integers(0, 1 << MAX_DEPTH, (30, 3)):
+        voxels[tuple(place)] = chance.choice([0, *MATERIALS])
+    return voxels
+
+
+def some_place(side):
     if random.random() < 0.5:
-        return [random.choice([16 * random.randint(0, SIDE), random.randint(0, 16 * SIDE)]) for _ in range(3)]
-    return [random.choice([16 * random.randint(-4, 12), random.randint(-200, 300)]) for _ in range(3)]
+        return [random.choice([16 * random.randint(0, side), random.randint(0, 16 * side)]) for _ in range(3)]
+    return [
+        random.choice([16 * random.randint(-side // 2, 3 * side // 2), random.randint(-25 * side, 38 * side)])
+        for _ in range(3)
+    ]
 
 
-def into_the_world(position):
+def into_the_world(position, side):
     """Make a direction from there to somewhere in the world."""
-    return [random.randint(0, 16 * SIDE) - place for place in position]
+    return [random.randint(0, 16 * side) - place for place in position]
 
 
-async def some_shader(dut):
+async def some_shader(dut, side):
     """Set what a frame's shading is, of what is built in; give the same to the oracle."""
     palette = [[random.choice([0, 255, random.randrange(256)]) for _ in range(3)] for _ in range(256)]
     faces = tuple(random.randrange(256) for _ in range(6)) if random.random() < 0.5 else None
@@ -225,40 +239,41 @@ async def some_shader(dut):
             await RisingEdge(dut.clk_i)
         drive(dut, material_write_i=0)
     if int(dut.Light.value) and random.random() < 0.8:
-        set_light(dut, shader, some_place())
+        set_light(dut, side, shader, some_place(side))
     drive(dut, shading_i=SHADING.pack(light=shader.light is not None, bounces=shader.bounces))
     return shader
 
 
-def set_light(dut, shader, light):
+def set_light(dut, side, shader, light):
     shader.light, shader.ambient = light, random.choice([0, random.randrange(100)])
-    places = [*light, *(16 * SIDE - place for place in light)]
-    occluder = [sum(16 * plane < place for plane in range(SIDE)) for place in places]
-    backface = [sum(16 * plane <= place for plane in range(SIDE)) for place in places]
+    places = [*light, *(16 * side - place for place in light)]
+    occluder = [sum(16 * plane < place for plane in range(side)) for place in places]
+    backface = [sum(16 * plane <= place for plane in range(side)) for place in places]
     drive(dut, light_planes_i=LIGHT_PLANES.pack(occluder=occluder, backface=backface))
 
 
-async def frame(dut, count, sending, taking):
-    shader = await some_shader(dut)
-    voxels = some_world(int(dut.Light.value) or int(dut.Mirrors.value))
-    position = some_place()
-    directions = [random.choice([some_direction(), into_the_world(position)]) for _ in range(count)]
+async def frame(dut, count, sending, taking, *, deep=False):
+    voxels = deep_world() if deep else some_world(int(dut.Light.value) or int(dut.Mirrors.value))
+    side = len(voxels)
+    shader = await some_shader(dut, side)
+    position = some_place(side)
+    directions = [random.choice([some_direction(), into_the_world(position, side)]) for _ in range(count)]
     await trace(dut, (voxels, shader, position, directions), sending, taking)
 
 
 async def trace(dut, scene, sending, taking, **hurry):
     voxels, shader, position, directions = scene
-    words = words_of(voxels)
-    rays = [ray_of(position, direction, SIDE) for direction in directions]
+    side, words = len(voxels), words_of(voxels)
+    rays = [ray_of(position, direction, side) for direction in directions]
     world = WORLD.pack(
         origin=position,
-        mirrored_origin=[16 * SIDE - place for place in position],
-        depth=DEPTH,
-        side=SIDE,
-        outside_mask=(1 << MAX_DEPTH) - SIDE,
+        mirrored_origin=[16 * side - place for place in position],
+        depth=side.bit_length() - 1,
+        side=side,
+        outside_mask=(1 << MAX_DEPTH) - side,
     )
     drive(dut, world_i=world, root_i=encoded(int(words[0])))
-    surroundings = Surroundings(dut, words, shader, rays, **hurry)
+    surroundings = Surroundings(dut, (side, words), shader, rays, **hurry)
     runner = cocotb.start_soon(surroundings.run(sending, taking))
     try:
         for _ in range(500):
@@ -274,7 +289,7 @@ async def trace(dut, scene, sending, taking, **hurry):
         wanted = background if ray.overflow else shaded_pixel(voxels, shader, position, direction)
         assert surroundings.pixel(tag, direction) == wanted, (position, direction)
     assert not surroundings.errors
-    assert len(surroundings.free_rows) == ROWS
+    assert len(surroundings.free_rows) == 1 << len(dut.ray_row_i)
 
 
 async def begin(dut):
@@ -290,15 +305,22 @@ async def pixels(dut, sending, taking):
 
 
 @cocotb.test()
+async def pixels_of_all_levels(dut):
+    await begin(dut)
+    for _ in range(6):
+        await frame(dut, 60, "always", "random", deep=True)
+
+
+@cocotb.test()
 async def all_slots_ask_for_a_shadow_ray(dut):
     """Shadow rays come when no slot is free, and there are no credits for others: a ray that hits gives its slot up."""
     await begin(dut)
-    shader = await some_shader(dut)
-    voxels = np.zeros((SIDE,) * 3, np.uint8)
-    voxels[:, :, SIDE // 2 :] = MATERIALS[-1]
-    position = [8 * SIDE, 8 * SIDE, -16]
+    shader = await some_shader(dut, SMALL)
+    voxels = np.zeros((SMALL,) * 3, np.uint8)
+    voxels[:, :, SMALL // 2 :] = MATERIALS[-1]
+    position = [8 * SMALL, 8 * SMALL, -16]
     if int(dut.Light.value):
-        set_light(dut, shader, position)
+        set_light(dut, SMALL, shader, position)
         drive(dut, shading_i=SHADING.pack(light=1, bounces=shader.bounces))
     directions = [[random.randint(-20, 20), random.randint(-20, 20), 60] for _ in range(60)]
     await trace(dut, (voxels, shader, position, directions), "always", "always", hurry=0.01)

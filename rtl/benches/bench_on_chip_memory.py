@@ -21,6 +21,7 @@ def some_word():
             1 + 8 * block,
             2 + 8 * block,
             1 + (8 << BLOCK_BITS),
+            1 + 8 * block | 1 << random.randrange(3 + BLOCK_BITS, 31),
             REFUSED,
         ]
     )

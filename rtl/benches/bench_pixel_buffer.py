@@ -6,6 +6,8 @@ import cocotb
 from cocotb.triggers import ClockCycles, FallingEdge, RisingEdge, with_timeout
 from streams import PACES, cancel, drive, pace, reset, start, take
 
+DEPTH = 16
+
 
 async def complete(dut, pixels, kind, disorder):
     """Allocate an entry per pixel; store and complete them late, out of order, the pixel first or with the answer."""
@@ -39,7 +41,7 @@ def some(count):
 
 
 @cocotb.test()
-@cocotb.parametrize(**PACES, disorder=[0, 7])
+@cocotb.parametrize(**PACES, disorder=[0, 7, 99])
 async def order(dut, sending, taking, disorder):
     await start(dut, allocate_i=0, complete_i=0, store_i=0, ready_i=0)
     await ClockCycles(dut.clk_i, 20)
@@ -49,6 +51,33 @@ async def order(dut, sending, taking, disorder):
     await completer
     await ClockCycles(dut.clk_i, 20)
     assert not int(dut.valid_o.value)
+
+
+@cocotb.test()
+async def a_pixel_per_clock(dut):
+    """Pixels that are all complete come one per clock; a full buffer has no more entries to allocate."""
+    await start(dut, allocate_i=0, complete_i=0, store_i=0, ready_i=0)
+    await ClockCycles(dut.clk_i, 20)
+    for _ in range(5):
+        tags, pixels = [], some(DEPTH)
+        for _ in range(2 * DEPTH):
+            await FallingEdge(dut.clk_i)
+            drive(dut, allocate_i=int(dut.ready_o.value))
+            await RisingEdge(dut.clk_i)
+            tags += [int(dut.tag_o.value)] * int(dut.allocate_i.value)
+        assert len(tags) == DEPTH
+        for tag, (pixel, lit) in zip(tags, pixels, strict=True):
+            drive(dut, allocate_i=0, complete_i=1, store_i=1, tag_i=tag, pixel_i=pixel, lit_i=lit)
+            await RisingEdge(dut.clk_i)
+        drive(dut, complete_i=0, store_i=0)
+        await ClockCycles(dut.clk_i, 10)
+        drive(dut, ready_i=1)
+        for pixel in pixels:
+            await RisingEdge(dut.clk_i)
+            assert int(dut.valid_o.value)
+            assert seen(dut) == pixel
+        drive(dut, ready_i=0)
+        await ClockCycles(dut.clk_i, 3)
 
 
 @cocotb.test()

@@ -4,7 +4,7 @@ import random
 
 import cocotb
 from cocotb.triggers import ClockCycles, RisingEdge
-from rays import FACE_NONE, ray_of, some_direction
+from rays import FACE_NONE, aimed_direction, ray_of, some_direction
 from streams import drive, pace, reset, start
 from structs import DISTANCE, RAY, SHADOW_POINT, WEIGHT, WORLD, packed_array, signed, unpacked_array
 
@@ -27,9 +27,10 @@ def some_shadow(side):
     """Make a lit point, 1/32 voxel, on a face, and the direction from there."""
     face = random.randrange(3)
     point = [2 * random.randrange(16 * side) + 1 for _ in range(3)]
-    direction = [random.choice([0, random.randint(-(1 << 20) + 1, (1 << 20) - 1)]) for _ in range(3)]
+    most = (1 << 20) - 1
+    direction = [random.choice([0, most, -most, random.randint(-most, most)]) for _ in range(3)]
     point[face] = 32 * random.randint(0, side)
-    direction[face] = random.randint(1, 1 << 19) * (-1 if point[face] == 32 * side else 1)
+    direction[face] = random.choice([most, random.randint(1, most)]) * (-1 if point[face] == 32 * side else 1)
     return point, direction
 
 
@@ -103,7 +104,8 @@ async def frame(dut, count, kind):
             await RisingEdge(dut.clk_i)
             continue
         lane, tag, shadow = 1 << random.randrange(LANES), random.randrange(256), light and random.random() < 0.3
-        point, direction = some_shadow(side) if shadow else (position, some_direction())
+        away = random.choice([some_direction(), aimed_direction(position, side)])
+        point, direction = some_shadow(side) if shadow else (position, away)
         ray = ray_of(point, direction, side, unit=32 if shadow else 16, inside=shadow)
         wanted.append(expected(ray, lane, tag, shadow, KEY_BITS + light))
         drive_ray(dut, valid_i=1, lane_i=lane, direction_i=direction, shadow_i=shadow, tag_i=tag)

@@ -24,11 +24,10 @@ def packed(*fields):
 
 
 def some_frame():
-    """Make a frame whose directions are small enough, or steep."""
-    largest = random.choice([3, 100, 20000])
-    corner, right, line = (
-        [random.randint(-bound, bound) for _ in range(3)] for bound in (largest * 20, largest, largest)
-    )
+    """Make a frame whose directions are small enough, or steep; the least ones show each bit of their squares."""
+    largest = random.choice([1, 3, 100, 20000])
+    farthest = largest * random.choice([1, 20])
+    corner, right, line = ([random.randint(-bound, bound) for _ in range(3)] for bound in (farthest, largest, largest))
     return corner, right, line, random.randint(1, 9), random.randint(1, 7)
 
 

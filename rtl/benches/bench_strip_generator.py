@@ -36,6 +36,14 @@ async def wide_frames(dut, width):
 
 
 @cocotb.test()
+@cocotb.parametrize(height=[513, 1500, 4095])
+async def tall_frames(dut, height):
+    await start(dut, raster_i=0, ready_i=0)
+    frame = *some_frame()[:3], 1, height
+    await check_frame(dut, frame, expected(frame), "always", lambda: seen(dut))
+
+
+@cocotb.test()
 async def reset_at_any_clock(dut):
     await start(dut, raster_i=0, ready_i=0)
     for _ in range(20):

@@ -54,3 +54,13 @@ def some_direction():
     if random.random() < 0.05:
         direction[random.randrange(3)] = random.choice([1, -1]) * random.choice([OVERFLOW, OVERFLOW + 1, (1 << 28) - 1])
     return direction
+
+
+def aimed_direction(position, side):
+    """Make a direction from a position, 1/16 voxel, to a point in the world, or near its planes and edges."""
+    near = random.randint(-1, 1)
+    aims = [random.choice([near, 16 * side + near, random.randint(0, 16 * side)]) for _ in range(3)]
+    way = [aim - place for aim, place in zip(aims, position, strict=True)]
+    longest = max(map(abs, way)) or 1
+    scale = random.choice([1, (OVERFLOW - 1) // longest, random.randint(1, (OVERFLOW - 1) // longest)])
+    return [scale * step for step in way]

@@ -88,13 +88,16 @@ async def exchange(dut, items, get, sending, taking, *, count=None, **ports):
 
 
 async def reset_on_the_way(dut, items, get, **ports):
-    """Reset after a random number of clocks, with both sides at work. `ports` name the output's valid and ready."""
+    """Reset, for one to three clocks, after a random number of clocks, with both sides at work.
+
+    `ports` name the output's valid and ready.
+    """
     taker = take(dut, len(items), "random", get, **ports)
     tasks = [cocotb.start_soon(send(dut, items, "random")), cocotb.start_soon(taker)]
     await ClockCycles(dut.clk_i, random.randrange(1, 2 * len(items)))
     cancel(*tasks)
     drive(dut, valid_i=0, **{ports.get("ready", "ready_i"): 0})
-    await reset(dut)
+    await reset(dut, random.randrange(1, 4))
 
 
 async def check_bytes(dut, sending, taking):

@@ -53,11 +53,11 @@ module voxrt_axi_read_master_properties
       assume (rst_ni);
       else assume (!rst_ni);
 
-  // The slave: addresses that it took, of which it gives the oldest; a beat's data is its address.
+  // The slave: addresses that it took, of which it gives the oldest; a beat's data are its number and its address.
   logic [31:0] held_q[2*UnderWay];
   logic [2:0] count_q;
   logic [1:0] beat_q;
-  logic takes, gives;
+  logic takes, gives, error_q;  // An error in the last burst.
 
   assign takes = axi_o.arvalid && arready_i;
   assign gives = rvalid_i && axi_o.rready;
@@ -65,15 +65,17 @@ module voxrt_axi_read_master_properties
   always_comb begin
     axi_i.arready = arready_i;
     axi_i.rvalid  = rvalid_i;
-    axi_i.rdata   = {32'(beat_q), held_q[0]};
+    axi_i.rdata   = {{16{beat_q}}, held_q[0]};
     axi_i.rresp   = rresp_i;
     if (count_q == '0) assume (!rvalid_i);
     assume (!rresp_i[0] || rresp_i[1]);
-    assume (request_address_i[31:4] == '0);
+    // Few addresses, in which every bit is 0 and 1.
+    assume (request_address_i == {8{request_address_i[3:0]}});
   end
 
   always_ff @(posedge clk_i) begin
     if (gives) beat_q <= beat_q + 1'b1;
+    if (gives) error_q <= rresp_i[1] || (error_q && beat_q != '0);
     if (gives && beat_q == 2'd3) for (int unsigned i = 1; i < 2 * UnderWay; i++) held_q[i-1] <= held_q[i];
     if (takes) held_q[count_q-3'(gives&&beat_q==2'd3)] <= axi_o.araddr;
     count_q <= count_q + 3'(takes) - 3'(gives && beat_q == 2'd3);
@@ -106,8 +108,32 @@ module voxrt_axi_read_master_properties
       assert (count_q <= 3'(UnderWay));
       if (answer_valid_o) assert (owed_count_q != '0);
       if (answer_valid_o && !answer_failed_o) begin
-        for (int unsigned b = 0; b < 4; b++) assert (answer_line_o[64*b+:64] == {32'(b), owed_q[0]});
+        assert (!error_q);
+        for (int unsigned b = 0; b < 4; b++) assert (answer_line_o[64*b+:64] == {{16{2'(b)}}, owed_q[0]});
       end
+    end
+  end
+
+  // It fails for a reason: the input, an error on the bus, silence of at least half of the time.
+  logic reason_q;
+  logic [TimeoutBits:0] silence_q;
+
+  always_ff @(posedge clk_i) begin
+    if (recover_i) reason_q <= 1'b0;
+    if (fail_i || bus_error_o || bus_timeout_o) reason_q <= 1'b1;
+    silence_q <= silence_q + 1'b1;
+    if (rvalid_i || asks || owed_count_q == '0) silence_q <= '0;
+    if (!rst_ni || clear_i) begin
+      reason_q  <= 1'b0;
+      silence_q <= '0;
+    end
+  end
+
+  always_comb begin
+    if (started_q) begin
+      assert (answer_failed_o == reason_q);
+      if (bus_error_o) assert (rvalid_i && rresp_i[1]);
+      if (bus_timeout_o) assert (silence_q >= (TimeoutBits + 1)'(2 ** TimeoutBits / 2));
     end
   end
 

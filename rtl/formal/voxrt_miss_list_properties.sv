@@ -1,6 +1,6 @@
 // Every lane whose miss is accepted gets its line once, when its entry ends; none else gets it. A line that is waited for
-// is fetched once. The environment has one lane per pipe; it does not ask for a line that it waits for, or that has come in
-// the clock before.
+// is fetched once, and comes with its way. The environment has one lane per pipe; it does not ask for a line that it waits
+// for, or that has come in the clock before.
 module voxrt_miss_list_properties #(
   parameter int unsigned LineBits = 2,
   parameter int unsigned Entries  = 2
@@ -25,7 +25,7 @@ module voxrt_miss_list_properties #(
 
   assign next_line = '{next_line0_i, next_line1_i};
   assign lanes     = '{1'b1, 1'b1};
-  assign way       = '{2'd0, 2'd0};
+  assign way       = '{2'(line[0]), 2'(line[1])};
 
   always_ff @(posedge clk_i) line <= next_line;
 
@@ -93,8 +93,13 @@ module voxrt_miss_list_properties #(
         if (come_q[2] && come_line_q[2] == target) assert (gets[p] == waits_q[p]);
         // What is waited for is under way.
         if (waits_q[p]) assert (!empty_o);
+        if (waits_q[p] && !on_way_q) assert (fetch_valid_o);
+        // One that misses alone enters an empty list, and joins the other that waits for its line.
+        if (miss_i[p] && !miss_i[1-p] && empty_o) assert (accepted_o[p]);
+        if (miss_i[p] && line[p] == target && waits_q[1-p]) assert (accepted_o[p]);
       end
     end
+    if (started_q && rst_ni && come_i) assert (come_way_o == 2'(come_line_o));
     // Fetched once.
     if (started_q && rst_ni && fetch_valid_o && fetch_line_o == target) assert (!on_way_q);
   end
