@@ -43,13 +43,14 @@ module board_boot_copy
   logic [31:0] word;
   logic [255:0] data_q;
 
-  // Each row is written back as it was read: without a write port it would be a ROM to yosys, which lays ROMs out in a way
-  // that voxrt.board.designs.base_design does not know. The reset lasts until the first row has been read.
+  // Each row is written back as it was read: without a write port it would be a ROM to yosys, which lays ROMs out in a
+  // way that voxrt.board.designs.base_design does not know. Step 0 writes nothing, and the reset holds step 0: read_q
+  // is not the row yet, and a row that is read and written at once would be undefined.
   always_ff @(posedge clk_i) begin
     place_q <= place;
     read_q  <= rows_q[place];
     row_q   <= read_q;
-    if (state_q == Fetch) rows_q[place_q] <= read_q;
+    if (state_q == Fetch && step_q != '0) rows_q[place_q] <= read_q;
   end
 
   voxrt_word_decoder #(
