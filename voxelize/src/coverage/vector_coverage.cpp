@@ -43,7 +43,11 @@ const std::vector<CoverageEngine>& coverage_engines() {
         if (has_avx2())
             found.push_back({"avx2", cover_by_vectors_avx2});
 #endif
+#if defined(__wasm__)
+        found.push_back({"portable", nullptr});
+#else
         found.push_back({"portable", cover_by_vectors_portable});
+#endif
         return found;
     }();
     return engines;

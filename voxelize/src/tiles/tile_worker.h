@@ -225,7 +225,7 @@ private:
                 }
             }
             if (part.material != 0 || !mesh.rasters.has_raster(t)) {
-                if (fits_vectors(a, b, c))
+                if (cover_by_vectors_ != nullptr && fits_vectors(a, b, c))
                     cover_by_vectors_(a, b, c, window, counts && Cross && !has_rule, surface);
                 else
                     cover_with(surface);
