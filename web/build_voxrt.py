@@ -21,8 +21,8 @@ ROOMS = {"voxelize": "voxelize/src", "octree": "octree/src", "sim": "sim/src/mod
 LEFT_OUT = {"block_file.cpp", "disk_assembly.cpp", "module.cpp"}
 LEFT_OUT_ENDS = ("_avx2.cpp", "_avx512.cpp", "_bindings.cpp")
 
-# Folders and files of what runs once per mesh or memory, or by rules that few ask for, and the largest file: a small page
-# matters more than their speed.
+# Folders and files of what runs once per mesh or memory, or by rules that few ask for, and the largest file: a small
+# page matters more than their speed.
 RUN_ONCE = {"faces", "holes", "mesh", "scene", "sight", "budget", "files", "surface", "src", "rules"}
 RUN_ONCE |= {"exact_volume.cpp", "voxelizer.cpp"}
 
