@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 _BURST = 4096  # words per step, at least
 _STEPS = 256  # to write a scene, at most: a frame may come between two
 _PATCH_PART = 4  # a patch has a word per so many of the scene, at most
+_PATCH_LIMIT = 1 << 20  # words of both scenes: they are compared in one step, 0.2 s at most
 _IDS = tuple(str(number) for number in range(256))  # names, so that worlds keep the numbers of materials
 _BLACK, _DULL = np.zeros((256, 3), np.uint8), np.zeros(256, np.bool_)
 
@@ -274,6 +275,8 @@ class SceneMemory:
         """Return a world that has the words of the present scene, where they may be most of a scene."""
         present = self._scene
         if present is None or self._in_doubt or present.depth != scene.depth or scene.roots != (0,):
+            return None
+        if len(present.words) + len(scene.words) > _PATCH_LIMIT:
             return None
         if self._world is not None:
             return self._world if self._world is self._loads else None
