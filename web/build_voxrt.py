@@ -23,8 +23,8 @@ LEFT_OUT_ENDS = ("_avx2.cpp", "_avx512.cpp", "_bindings.cpp")
 
 # Folders and files of what runs once per mesh or memory, or by rules that few ask for, and the largest file: a small
 # page matters more than their speed.
-RUN_ONCE = {"faces", "holes", "mesh", "scene", "sight", "budget", "files", "surface", "src", "rules"}
-RUN_ONCE |= {"exact_volume.cpp", "voxelizer.cpp"}
+COMPILED_SMALL = {"faces", "holes", "mesh", "scene", "sight", "budget", "files", "surface", "src", "rules"}
+COMPILED_SMALL |= {"exact_volume.cpp", "voxelizer.cpp"}
 
 
 def main() -> None:
@@ -65,7 +65,7 @@ def our_units() -> list[Unit]:
     sources = [path for folder in folders for path in sorted(folder.rglob("*.cpp"))]
     sources += sorted((ROOT / "web" / "src").glob("*.cpp"))
     return [
-        Unit(source, (*flags, "-Os") if {source.parent.name, source.name} & RUN_ONCE else flags)
+        Unit(source, (*flags, "-Os") if {source.parent.name, source.name} & COMPILED_SMALL else flags)
         for source in sources
         if source.name not in LEFT_OUT and not source.name.endswith(LEFT_OUT_ENDS)
     ]
