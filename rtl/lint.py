@@ -73,14 +73,11 @@ def lint(what: str, top: str, arguments: list[str | Path]) -> bool:
 
 def lint_boards() -> bool:
     """Lint the designs of the boards with few and many lanes, and their self-tests."""
-    lists = {
-        name: (DESIGNS / f"{name}.f").read_text().splitlines()
-        for name in ("ecp5", "ecp5_sdram", "gowin", "ecp5_selftest")
-    }
+    lists = {name: (DESIGNS / f"{name}.f").read_text().splitlines() for name in ("ecp5", "gowin", "ecp5_selftest")}
     designs = {name: [DESIGNS / line for line in lines if line.endswith(".sv")] for name, lines in lists.items()}
     tops = [
         (top, f"{top} with {lanes} lanes", [f"-GLanes={lanes}", *list_sources(), *designs[name]])
-        for top, name in (("ecp5_top", "ecp5"), ("ecp5_top_sdram", "ecp5_sdram"), ("gowin_top", "gowin"))
+        for top, name in (("ecp5_top", "ecp5"), ("ecp5_top_sdram", "ecp5"), ("gowin_top", "gowin"))
         for lanes in (1, 4)
     ]
     tops += [(top, top, list(designs["ecp5_selftest"])) for top in ("ecp5_selftest", "ecp5_selftest_sdram")]

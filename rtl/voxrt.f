@@ -52,6 +52,7 @@ shading/voxrt_light.sv
 shading/voxrt_light_direction.sv
 shading/voxrt_merge.sv
 shading/voxrt_pixel_packer.sv
+shading/voxrt_frame_end.sv
 shading/voxrt_pixels.sv
 shading/voxrt_serial_shader.sv
 shading/voxrt_shader.sv

@@ -32,6 +32,8 @@ module voxrt_core
   parameter int unsigned RayClocks    = 1,
   // Level of detail, 0 = not built in; not with Light or Mirrors.
   parameter bit          Lod          = 1'b0,
+  // A soft reset ends the frame on the stream with black, 0 = cuts it: voxrt_frame_end.
+  parameter bit          EndsFrames   = 1'b0,
   // What the octree memory holds from the beginning, for $readmemh (voxrt_octree_memory); "": nothing.
   parameter string       OctreeFile   = ""
 ) (
@@ -57,6 +59,8 @@ module voxrt_core
   input  logic        s_axil_rready,
   output logic [31:0] s_axil_rdata,
   output logic [ 1:0] s_axil_rresp,
+  // 1 while a bit of the register status is set that writing 1 clears: a frame has ended, or had an error.
+  output logic        interrupt_o,
   // Octree memory.
   input  logic        bram_en_i,
   input  logic [ 3:0] bram_we_i,
@@ -245,21 +249,59 @@ module voxrt_core
     .counters_o      (counters)
   );
 
+  logic packed_valid, packed_ready, packed_user, packed_last;
+  logic [31:0] packed_data;
+  logic [3:0] packed_keep;
+
   voxrt_pixel_packer u_packer (
     .clk_i,
-    .rst_ni    (rst_n),
-    .valid_i   (pixel_valid),
-    .ready_o   (pixel_ready),
-    .colour_i  (pixel.colour),
-    .first_i   (pixel.first),
-    .line_end_i(pixel.line_end),
-    .m_axis_tvalid,
-    .m_axis_tready,
-    .m_axis_tdata,
-    .m_axis_tkeep,
-    .m_axis_tuser,
-    .m_axis_tlast
+    .rst_ni       (rst_n),
+    .valid_i      (pixel_valid),
+    .ready_o      (pixel_ready),
+    .colour_i     (pixel.colour),
+    .first_i      (pixel.first),
+    .line_end_i   (pixel.line_end),
+    .m_axis_tvalid(packed_valid),
+    .m_axis_tready(packed_ready),
+    .m_axis_tdata (packed_data),
+    .m_axis_tkeep (packed_keep),
+    .m_axis_tuser (packed_user),
+    .m_axis_tlast (packed_last)
   );
+
+  if (EndsFrames) begin : gen_frame_end
+    voxrt_frame_end u_frame_end (
+      .clk_i,
+      .rst_ni,
+      .drop_i       (!rst_n),
+      .start_i      (start && !busy),
+      .width_i      (frame.width),
+      .height_i     (frame.height),
+      .s_axis_tvalid(packed_valid),
+      .s_axis_tready(packed_ready),
+      .s_axis_tdata (packed_data),
+      .s_axis_tkeep (packed_keep),
+      .s_axis_tuser (packed_user),
+      .s_axis_tlast (packed_last),
+      .m_axis_tvalid,
+      .m_axis_tready,
+      .m_axis_tdata,
+      .m_axis_tkeep,
+      .m_axis_tuser,
+      .m_axis_tlast
+    );
+  end else begin : gen_no_frame_end
+    assign m_axis_tvalid = packed_valid;
+    assign packed_ready  = m_axis_tready;
+    assign m_axis_tdata  = packed_data;
+    assign m_axis_tkeep  = packed_keep;
+    assign m_axis_tuser  = packed_user;
+    assign m_axis_tlast  = packed_last;
+  end
+
+  assign interrupt_o = control.status.frame_done.value || control.status.direction_overflow.value ||
+      control.status.bad_pointer.value || control.status.step_limit.value || control.status.bus_error.value ||
+      control.status.bus_timeout.value;
 
   assign status.configuration.lanes.next         = 8'(Lanes);
   assign status.configuration.max_depth.next     = 5'(MaxDepth);

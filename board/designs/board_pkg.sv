@@ -43,4 +43,14 @@ package board_pkg;
     logic request_bad;
     logic write_refused;
   } count_events_t;
+
+  // What goes to an SDRAM: board_sdram makes it, board_sdram_pins brings it out. Names are those of the chip's pins.
+  typedef struct packed {
+    logic        cke,   cs_n, ras_n, cas_n, we_n;
+    logic [1:0]  ba;
+    logic [12:0] a;
+    logic [1:0]  dqm;
+    logic        dq_oe;                            // The data are driven.
+    logic [15:0] dq;
+  } sdram_out_t;
 endpackage

@@ -1,5 +1,5 @@
-// Resets one clock: rst_no is low for 16 clocks from the PLL's lock on. Flip-flops of an ECP5 are 0 when it is
-// configured.
+// Resets one clock: rst_no is low until the PLL has been locked for 16 clocks, and again when it loses its lock. Flip-flops
+// are 0 when an FPGA is configured.
 module board_reset (
   input  logic clk_i,
   input  logic locked_i,  // Any clock.
@@ -15,8 +15,8 @@ module board_reset (
   );
 
   always_ff @(posedge clk_i) begin
-    if (locked && !rst_nq) count_q <= count_q + 1'b1;
-    rst_nq <= rst_nq || count_q == '1;
+    count_q <= locked ? count_q + 4'(count_q != '1) : '0;
+    rst_nq  <= locked && count_q == '1;
   end
 
   assign rst_no = rst_nq;

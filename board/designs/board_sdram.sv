@@ -7,32 +7,25 @@
 //
 // Counts of clocks hold up to 80 MHz, for parts of speed -7 and faster. board_sdram_pins adds one clock on the way out,
 // and one and a half on the way in.
-module board_sdram #(
+module board_sdram
+  import board_pkg::*;
+#(
   parameter int unsigned ClockHz   = 57_692_307,  // Hz: 12 to 80 million.
   parameter int unsigned PowerOnUs = 200          // The chip is left alone after power-on, us: 1 .. 50,000.
 ) (
-  input  logic         clk_i,
-  input  logic         rst_ni,
-  input  logic         request_valid_i,
-  output logic         request_ready_o,
-  input  logic         request_write_i,
-  input  logic [ 19:0] request_line_i,
-  input  logic [ 15:0] request_mask_i,   // Which half words are written.
-  input  logic [255:0] request_data_i,
-  output logic         done_o,           // For one clock, once per request.
-  output logic [255:0] line_o,           // What was read, with done_o.
+  input  logic               clk_i,
+  input  logic               rst_ni,
+  input  logic               request_valid_i,
+  output logic               request_ready_o,
+  input  logic               request_write_i,
+  input  logic       [ 19:0] request_line_i,
+  input  logic       [ 15:0] request_mask_i,   // Which half words are written.
+  input  logic       [255:0] request_data_i,
+  output logic               done_o,           // For one clock, once per request.
+  output logic       [255:0] line_o,           // What was read, with done_o.
   // To the pins.
-  output logic         sdram_cke_o,
-  output logic         sdram_cs_no,
-  output logic         sdram_ras_no,
-  output logic         sdram_cas_no,
-  output logic         sdram_we_no,
-  output logic [  1:0] sdram_ba_o,
-  output logic [ 12:0] sdram_a_o,
-  output logic [  1:0] sdram_dqm_o,
-  output logic         sdram_dq_oe_o,
-  output logic [ 15:0] sdram_dq_o,
-  input  logic [ 15:0] sdram_dq_i
+  output sdram_out_t         sdram_o,
+  input  logic       [ 15:0] sdram_dq_i
 );
   if (ClockHz < 12_000_000 || ClockHz > 80_000_000) $error("board_sdram: ClockHz must be 12 to 80 million");
   if (PowerOnUs < 1 || PowerOnUs > 50_000) $error("board_sdram: PowerOnUs must be 1 to 50,000 us");
@@ -95,6 +88,10 @@ module board_sdram #(
 
   logic [DoneClocks-1:0] under_way_q;
   logic [255:0] line_q;
+  logic [1:0] ba_q, dqm_q;
+  logic [12:0] a_q;
+  logic dq_oe_q;
+  logic [15:0] dq_out_q;
   logic starts, second, opens, refreshes;
   logic [1:0] next_bank;
 
@@ -109,17 +106,15 @@ module board_sdram #(
 
   assign request_ready_o = state_q == Run && !refresh_due_q && !next_valid_q;
 
-  assign sdram_cke_o = 1'b1;
   // Flip-flops are 0 after configuration: the chip is not selected until the first clock out of reset.
-  assign sdram_cs_no = !selected_q;
-  assign {sdram_ras_no, sdram_cas_no, sdram_we_no} = command_q;
-  assign line_o = line_q;
+  assign sdram_o = {1'b1, !selected_q, command_q, ba_q, a_q, dqm_q, dq_oe_q, dq_out_q};
+  assign line_o  = line_q;
 
   always_ff @(posedge clk_i) begin
     command_q     <= None;
     selected_q    <= 1'b1;
-    sdram_dqm_o   <= '0;
-    sdram_dq_oe_o <= 1'b0;
+    dqm_q   <= '0;
+    dq_oe_q <= 1'b0;
     dq_q          <= sdram_dq_i;
     line_q        <= {dq_q, line_q[255:16]};
     under_way_q   <= {under_way_q[DoneClocks-2:0], 1'b0};
@@ -137,7 +132,7 @@ module board_sdram #(
 
     unique case (state_q)
       PowerOn: begin
-        sdram_dqm_o <= '1;
+        dqm_q <= '1;
         if (count_q == '0) begin
           count_q <= CountBits'(99);
           state_q <= Prepare;
@@ -145,15 +140,15 @@ module board_sdram #(
       end
       // All banks closed, eight refreshes ten clocks apart, the mode.
       Prepare: begin
-        sdram_a_o  <= 13'h400;
-        sdram_ba_o <= '0;
+        a_q  <= 13'h400;
+        ba_q <= '0;
         unique case (count_q)
           CountBits'(95): command_q <= Precharge;
           CountBits'(90), CountBits'(80), CountBits'(70), CountBits'(60), CountBits'(50), CountBits'(40),
           CountBits'(30), CountBits'(20): command_q <= Refresh;
           CountBits'(10): begin
             command_q <= SetMode;
-            sdram_a_o <= Mode;
+            a_q <= Mode;
           end
           CountBits'(0): state_q <= Run;
           default: ;
@@ -174,9 +169,9 @@ module board_sdram #(
         step_q <= step_q + 4'd1;
         if (step_q == 4'd15) streams_q <= 1'b0;
         if (streams_q && step_q != 4'd15 && write_q) begin
-          sdram_dq_oe_o <= 1'b1;
-          sdram_dq_o    <= data_q[15:0];
-          sdram_dqm_o   <= {2{!mask_q[0]}};
+          dq_oe_q <= 1'b1;
+          dq_out_q    <= data_q[15:0];
+          dqm_q   <= {2{!mask_q[0]}};
         end
         data_q <= data_q >> 16;
         mask_q <= mask_q >> 1;
@@ -188,24 +183,24 @@ module board_sdram #(
           place_q        <= next_line_q[6:0];
           under_way_q[0] <= 1'b1;
           command_q      <= next_write_q ? Write : Read;
-          sdram_ba_o     <= next_bank;
-          sdram_a_o      <= {4'd0, next_line_q[6:2], 4'd0};
+          ba_q     <= next_bank;
+          a_q      <= {4'd0, next_line_q[6:2], 4'd0};
           mask_q         <= next_mask_q >> 1;
           data_q         <= next_data_q >> 16;
-          sdram_dq_oe_o  <= next_write_q;
-          sdram_dq_o     <= next_data_q[15:0];
-          sdram_dqm_o    <= next_write_q ? {2{!next_mask_q[0]}} : '0;
+          dq_oe_q  <= next_write_q;
+          dq_out_q     <= next_data_q[15:0];
+          dqm_q    <= next_write_q ? {2{!next_mask_q[0]}} : '0;
           if (!next_write_q) turn_q <= ReadToWrite;
         end else if (second) begin
           command_q              <= write_q ? Write : Read;
-          sdram_ba_o             <= place_q[1:0];
-          sdram_a_o              <= {2'b00, 1'b1, 1'b0, place_q[6:2], 1'b1, 3'd0};
+          ba_q             <= place_q[1:0];
+          a_q              <= {2'b00, 1'b1, 1'b0, place_q[6:2], 1'b1, 3'd0};
           open_q[place_q[1:0]]   <= 1'b0;
           closes_q[place_q[1:0]] <= write_q ? CloseAfterWrite : CloseAfterRead;
         end else if (opens) begin
           command_q         <= Activate;
-          sdram_ba_o        <= next_bank;
-          sdram_a_o         <= next_line_q[19:7];
+          ba_q        <= next_bank;
+          a_q         <= next_line_q[19:7];
           next_open_q       <= 1'b1;
           open_q[next_bank] <= 1'b1;
           row_wait_q        <= RowWait;

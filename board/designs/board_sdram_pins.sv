@@ -3,37 +3,30 @@
 //
 // The chip answers more than two and a half clocks after it saw a command, so data are taken at the falling edge: 3.5
 // clocks after the command has left its flip-flop. docs/ecp5_boards.md has the sums.
-module board_sdram_pins (
-  input  logic        clk_i,
-  input  logic        chip_clk_i,  // clk_i, later by ChipDelay of board_pll.
-  input  logic        cke_i,
-  input  logic        cs_ni,
-  input  logic        ras_ni,
-  input  logic        cas_ni,
-  input  logic        we_ni,
-  input  logic [ 1:0] ba_i,
-  input  logic [12:0] a_i,
-  input  logic [ 1:0] dqm_i,
-  input  logic        dq_oe_i,
-  input  logic [15:0] dq_i,
-  output logic [15:0] dq_o,
+module board_sdram_pins
+  import board_pkg::*;
+(
+  input  logic              clk_i,
+  input  logic              chip_clk_i,  // clk_i, later by ChipDelay of board_pll.
+  input  sdram_out_t        sdram_i,
+  output logic       [15:0] dq_o,
   // Pins.
-  output logic        sdram_clk,
-  output logic        sdram_cke,
-  output logic        sdram_csn,
-  output logic        sdram_rasn,
-  output logic        sdram_casn,
-  output logic        sdram_wen,
-  output logic [ 1:0] sdram_ba,
-  output logic [12:0] sdram_a,
-  output logic [ 1:0] sdram_dqm,
-  inout  wire  [15:0] sdram_d
+  output logic              sdram_clk,
+  output logic              sdram_cke,
+  output logic              sdram_csn,
+  output logic              sdram_rasn,
+  output logic              sdram_casn,
+  output logic              sdram_wen,
+  output logic       [ 1:0] sdram_ba,
+  output logic       [12:0] sdram_a,
+  output logic       [ 1:0] sdram_dqm,
+  inout  wire        [15:0] sdram_d
 );
   localparam int unsigned Outputs = 22;
 
   logic [Outputs-1:0] inner, outer;
 
-  assign inner = {cke_i, cs_ni, ras_ni, cas_ni, we_ni, ba_i, a_i, dqm_i};
+  assign inner = {sdram_i.cke, sdram_i.cs_n, sdram_i.ras_n, sdram_i.cas_n, sdram_i.we_n, sdram_i.ba, sdram_i.a, sdram_i.dqm};
   assign {sdram_cke, sdram_csn, sdram_rasn, sdram_casn, sdram_wen, sdram_ba, sdram_a, sdram_dqm} = outer;
 
   ODDRX1F u_clock (
@@ -58,7 +51,7 @@ module board_sdram_pins (
     logic out, released, in, in_q;
 
     OFS1P3BX u_out (
-      .D   (dq_i[i]),
+      .D   (sdram_i.dq[i]),
       .PD  (1'b0),
       .SP  (1'b1),
       .SCLK(clk_i),
@@ -66,7 +59,7 @@ module board_sdram_pins (
     );
 
     OFS1P3BX u_release (
-      .D   (!dq_oe_i),
+      .D   (!sdram_i.dq_oe),
       .PD  (1'b0),
       .SP  (1'b1),
       .SCLK(clk_i),

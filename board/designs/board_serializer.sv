@@ -15,6 +15,7 @@ module board_serializer #(
   always_ff @(posedge pixel_clk_i) pixel_toggle_q <= pixel_rst_ni && !pixel_toggle_q;
 
   // Words have been still for two bit clocks when they are taken.
+  (* ASYNC_REG = "TRUE" *)
   logic [2:0] toggles_q;
   logic load;
 

@@ -4,6 +4,7 @@ module board_synchronizer (
   input  logic bit_i,
   output logic bit_o
 );
+  (* ASYNC_REG = "TRUE" *)
   logic [1:0] bits_q;
 
   always_ff @(posedge clk_i) bits_q <= {bits_q[0], bit_i};

@@ -42,7 +42,7 @@ SELFTESTS = {"ecp5_top": "ecp5_selftest", "ecp5_top_sdram": "ecp5_selftest_sdram
 _CORE, _SELFTEST = (RTL, "voxrt.f"), (DESIGNS, "ecp5_selftest.f")
 SOURCE_LISTS = {
     "ecp5_top": (_CORE, (DESIGNS, "ecp5.f")),
-    "ecp5_top_sdram": (_CORE, (DESIGNS, "ecp5_sdram.f")),
+    "ecp5_top_sdram": (_CORE, (DESIGNS, "ecp5.f")),
     GOWIN_TOP: (_CORE, (DESIGNS, "gowin.f")),
     "ecp5_selftest": (_SELFTEST,),
     "ecp5_selftest_sdram": (_SELFTEST,),

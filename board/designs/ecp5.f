@@ -18,5 +18,17 @@ board_crc32.sv
 board_uart.sv
 board_requests.sv
 board_control.sv
+board_beam.sv
+board_sdram.sv
+board_sdram_arbiter.sv
+board_sdram_axi.sv
+board_memory_port.sv
+board_boot_copy.sv
+board_frame_swap.sv
+board_frame_writer.sv
+board_frame_reader.sv
+board_sdram_memory.sv
+board_sdram_pins.sv
 board_system.sv
 ecp5_top.sv
+ecp5_top_sdram.sv

@@ -40,11 +40,8 @@ module ecp5_selftest_sdram #(
   logic [15:0] bits;
   logic [19:0] first;
 
-  // See board_sdram_pins.
-  logic cke, cs_n, ras_n, cas_n, we_n, dq_oe;
-  logic [1:0] ba, dqm;
-  logic [12:0] a;
-  logic [15:0] dq_out, dq_in;
+  board_pkg::sdram_out_t sdram;
+  logic [15:0] dq;
 
   board_selftest #(
     .InputDivider   (InputDivider),
@@ -109,33 +106,15 @@ module ecp5_selftest_sdram #(
     .request_data_i (request_data),
     .done_o         (done),
     .line_o         (read_line),
-    .sdram_cke_o    (cke),
-    .sdram_cs_no    (cs_n),
-    .sdram_ras_no   (ras_n),
-    .sdram_cas_no   (cas_n),
-    .sdram_we_no    (we_n),
-    .sdram_ba_o     (ba),
-    .sdram_a_o      (a),
-    .sdram_dqm_o    (dqm),
-    .sdram_dq_oe_o  (dq_oe),
-    .sdram_dq_o     (dq_out),
-    .sdram_dq_i     (dq_in)
+    .sdram_o        (sdram),
+    .sdram_dq_i     (dq)
   );
 
   board_sdram_pins u_sdram_pins (
     .clk_i     (system_clk),
     .chip_clk_i(chip_clk),
-    .cke_i     (cke),
-    .cs_ni     (cs_n),
-    .ras_ni    (ras_n),
-    .cas_ni    (cas_n),
-    .we_ni     (we_n),
-    .ba_i      (ba),
-    .a_i       (a),
-    .dqm_i     (dqm),
-    .dq_oe_i   (dq_oe),
-    .dq_i      (dq_out),
-    .dq_o      (dq_in),
+    .sdram_i   (sdram),
+    .dq_o      (dq),
     .sdram_clk,
     .sdram_cke,
     .sdram_csn,

@@ -64,6 +64,7 @@ module ecp5_top #(
 
   logic [2:0][9:0] words;
   logic [7:0] all_leds;
+  board_pkg::sdram_out_t unused_sdram;
 
   board_system #(
     .Lanes       (Lanes),
@@ -87,6 +88,8 @@ module ecp5_top #(
     .tx_o        (uart_tx),
     .buttons_i   (buttons),
     .leds_o      (all_leds),
+    .sdram_o     (unused_sdram),
+    .sdram_dq_i  ('0),
     .pixel_clk_i (pixel_clk),
     .pixel_rst_ni(pixel_rst_n),
     .words_o     (words)

@@ -81,13 +81,10 @@ module ecp5_top_sdram #(
   logic [2:0][9:0] words;
   logic [7:0] all_leds;
 
-  // See board_sdram_pins.
-  logic cke, cs_n, ras_n, cas_n, we_n, dq_oe;
-  logic [1:0] ba, dqm;
-  logic [12:0] a;
-  logic [15:0] dq_out, dq_in;
+  board_pkg::sdram_out_t sdram;
+  logic [15:0] dq;
 
-  board_system_sdram #(
+  board_system #(
     .Lanes        (Lanes),
     .MaxDepth     (MaxDepth),
     .PositionBits (PositionBits),
@@ -106,42 +103,24 @@ module ecp5_top_sdram #(
     .OctreeFile   (OctreeFile),
     .TableFile    (TableFile)
   ) u_system (
-    .clk_i        (system_clk),
-    .rst_ni       (system_rst_n),
-    .rx_i         (uart_rx),
-    .tx_o         (uart_tx),
-    .buttons_i    (buttons),
-    .leds_o       (all_leds),
-    .sdram_cke_o  (cke),
-    .sdram_cs_no  (cs_n),
-    .sdram_ras_no (ras_n),
-    .sdram_cas_no (cas_n),
-    .sdram_we_no  (we_n),
-    .sdram_ba_o   (ba),
-    .sdram_a_o    (a),
-    .sdram_dqm_o  (dqm),
-    .sdram_dq_oe_o(dq_oe),
-    .sdram_dq_o   (dq_out),
-    .sdram_dq_i   (dq_in),
-    .pixel_clk_i  (pixel_clk),
-    .pixel_rst_ni (pixel_rst_n),
-    .words_o      (words)
+    .clk_i       (system_clk),
+    .rst_ni      (system_rst_n),
+    .rx_i        (uart_rx),
+    .tx_o        (uart_tx),
+    .buttons_i   (buttons),
+    .leds_o      (all_leds),
+    .sdram_o     (sdram),
+    .sdram_dq_i  (dq),
+    .pixel_clk_i (pixel_clk),
+    .pixel_rst_ni(pixel_rst_n),
+    .words_o     (words)
   );
 
   board_sdram_pins u_sdram_pins (
     .clk_i     (system_clk),
     .chip_clk_i(chip_clk),
-    .cke_i     (cke),
-    .cs_ni     (cs_n),
-    .ras_ni    (ras_n),
-    .cas_ni    (cas_n),
-    .we_ni     (we_n),
-    .ba_i      (ba),
-    .a_i       (a),
-    .dqm_i     (dqm),
-    .dq_oe_i   (dq_oe),
-    .dq_i      (dq_out),
-    .dq_o      (dq_in),
+    .sdram_i   (sdram),
+    .dq_o      (dq),
     .sdram_clk,
     .sdram_cke,
     .sdram_csn,

@@ -18,5 +18,15 @@ board_crc32.sv
 board_uart.sv
 board_requests.sv
 board_control.sv
+board_beam.sv
+board_sdram.sv
+board_sdram_arbiter.sv
+board_sdram_axi.sv
+board_memory_port.sv
+board_boot_copy.sv
+board_frame_swap.sv
+board_frame_writer.sv
+board_frame_reader.sv
+board_sdram_memory.sv
 board_system.sv
 gowin_top.sv

@@ -62,6 +62,7 @@ module gowin_top #(
   logic [2:0][9:0] words;
   logic [7:0] all_leds;
   logic [2:0] all_buttons;
+  board_pkg::sdram_out_t unused_sdram;
 
   // Buttons that a board does not have are not pressed.
   always_comb begin
@@ -92,6 +93,8 @@ module gowin_top #(
     .tx_o        (uart_tx),
     .buttons_i   (all_buttons),
     .leds_o      (all_leds),
+    .sdram_o     (unused_sdram),
+    .sdram_dq_i  ('0),
     .pixel_clk_i (pixel_clk),
     .pixel_rst_ni(pixel_rst_n),
     .words_o     (words)

@@ -56,6 +56,7 @@ BUILDS = {
     "micro-many": Build(CORE, SMALL | {"Lanes": 5, "RayClocks": 4}, ("bench_core",), narrow=True, repeats=True),
     "nano": Build(CORE, SMALL | {"Lanes": 1, "RayClocks": 8}, ("bench_core",), narrow=True, repeats=True),
     "lod": Build(CORE, SMALL | {"Lanes": 2, "Lod": 1}, ("bench_lod", "bench_positions")),
+    "ends-frames": Build(CORE, SMALL | {"Lanes": 2, "EndsFrames": 1}, ("bench_frame_end",)),
     "fifo": Build("voxrt_fifo", {}, ("bench_fifo",)),
     "stream_register": Build("voxrt_stream_register", {}, ("bench_stream_register",)),
     "stream_register-cut": Build("voxrt_stream_register", {"CutsReady": 1}, ("bench_stream_register",)),

@@ -74,6 +74,7 @@ module first_frame #(
     .s_axil_rready (1'b1),
     .s_axil_rdata  (rdata),
     .s_axil_rresp  (rresp),
+    .interrupt_o   (),
     .bram_en_i     (bram_en),
     .bram_we_i     ({4{bram_en}}),
     .bram_addr_i   (bram_addr),

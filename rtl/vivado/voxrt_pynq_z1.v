@@ -23,6 +23,9 @@ module voxrt_pynq_z1 (
   input  wire        s_axil_rready,
   output wire [31:0] s_axil_rdata,
   output wire [ 1:0] s_axil_rresp,
+  (* X_INTERFACE_INFO = "xilinx.com:signal:interrupt:1.0 interrupt INTERRUPT" *)
+  (* X_INTERFACE_PARAMETER = "SENSITIVITY LEVEL_HIGH" *)
+  output wire        interrupt_o,
   (* X_INTERFACE_INFO = "xilinx.com:interface:bram:1.0 bram EN" *)
   (* X_INTERFACE_PARAMETER = "MASTER_TYPE BRAM_CTRL, MEM_SIZE 131072, MEM_WIDTH 32, READ_LATENCY 3" *)
   input  wire        bram_en_i,
@@ -73,6 +76,7 @@ module voxrt_pynq_z1 (
     .s_axil_rready (s_axil_rready),
     .s_axil_rdata  (s_axil_rdata),
     .s_axil_rresp  (s_axil_rresp),
+    .interrupt_o   (interrupt_o),
     .bram_en_i     (bram_en_i),
     .bram_we_i     (bram_we_i),
     .bram_addr_i   (bram_addr_i),

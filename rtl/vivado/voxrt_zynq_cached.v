@@ -32,6 +32,9 @@ module voxrt_zynq_cached #(
   input  wire        s_axil_rready,
   output wire [31:0] s_axil_rdata,
   output wire [ 1:0] s_axil_rresp,
+  (* X_INTERFACE_INFO = "xilinx.com:signal:interrupt:1.0 interrupt INTERRUPT" *)
+  (* X_INTERFACE_PARAMETER = "SENSITIVITY LEVEL_HIGH" *)
+  output wire        interrupt_o,
   (* X_INTERFACE_INFO = "xilinx.com:interface:aximm:1.0 m_axi0 ARVALID" *)
   (* X_INTERFACE_PARAMETER = "READ_WRITE_MODE READ_ONLY, MAX_BURST_LENGTH 4, NUM_READ_OUTSTANDING 8" *)
   output wire        m_axi0_arvalid,
@@ -124,6 +127,7 @@ module voxrt_zynq_cached #(
     .s_axil_rready (s_axil_rready),
     .s_axil_rdata  (s_axil_rdata),
     .s_axil_rresp  (s_axil_rresp),
+    .interrupt_o   (interrupt_o),
     .bram_en_i     (1'b0),
     .bram_we_i     (4'd0),
     .bram_addr_i   (32'd0),

@@ -2,12 +2,12 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "Vboot.h"
+#include "Vtop.h"
 #include "verilated.h"
 
 int main(int, char** arguments) {
     VerilatedContext context;
-    Vboot boot{&context};
+    Vtop boot{&context};
     auto clock = [&] {
         boot.clk_i = 1;
         boot.eval();

@@ -8,7 +8,7 @@
 #include <map>
 #include <random>
 
-#include "Vsdram.h"
+#include "Vtop.h"
 #include "verilated.h"
 
 namespace {
@@ -19,7 +19,7 @@ constexpr int ports = 4, ticks = 10, phase = 3;
 
 class Bench {
 public:
-    Vsdram top;
+    Vtop top;
     uint64_t clocks = 0;
     std::array<uint64_t, ports> lines{}; // That each port has had.
     uint64_t longest = 0;                // From a request to its acceptance.

@@ -108,14 +108,7 @@ module sdram_bench
   );
 
   // As board_sdram_pins: out by a flip-flop, in at the falling edge.
-  typedef struct packed {
-    logic        cke, cs_n, ras_n, cas_n, we_n;
-    logic [1:0]  ba,  dqm;
-    logic [12:0] a;
-    logic        oe;
-    logic [15:0] dq;
-  } pins_t;
-  pins_t inner, outer_q;
+  board_pkg::sdram_out_t inner, outer_q;
   logic driven;
   logic [15:0] from_chip, from_chip_q;
 
@@ -137,16 +130,7 @@ module sdram_bench
     .request_data_i (request_data),
     .done_o         (controller_done),
     .line_o,
-    .sdram_cke_o    (inner.cke),
-    .sdram_cs_no    (inner.cs_n),
-    .sdram_ras_no   (inner.ras_n),
-    .sdram_cas_no   (inner.cas_n),
-    .sdram_we_no    (inner.we_n),
-    .sdram_ba_o     (inner.ba),
-    .sdram_a_o      (inner.a),
-    .sdram_dqm_o    (inner.dqm),
-    .sdram_dq_oe_o  (inner.oe),
-    .sdram_dq_o     (inner.dq),
+    .sdram_o        (inner),
     .sdram_dq_i     (from_chip_q)
   );
 
@@ -169,7 +153,7 @@ module sdram_bench
     .ba_i       (outer_q.ba),
     .a_i        (outer_q.a),
     .dqm_i      (outer_q.dqm),
-    .dq_driven_i(outer_q.oe),
+    .dq_driven_i(outer_q.dq_oe),
     .dq_i       (outer_q.dq),
     .dq_driven_o(driven),
     .dq_o       (from_chip)

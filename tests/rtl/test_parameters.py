@@ -92,7 +92,6 @@ RANGES = {
         "ClockHz": ((24_000_000, 75_000_000), (23_999_999,)),
         "Baud": ((300, 9_375_000), (299, 9_375_001, 2**29)),
     },
-    "board_system_sdram": {"MemoryForm": ((2,), (0, 1, 3))},
     "ecp5_selftest": {"Leds": ((1, 8), (0, 9)), "Highs": ((1,), (0,))},
     "ecp5_selftest_sdram": {"Leds": ((1, 8), (0, 9)), "Highs": ((1,), (0,))},
     "ecp5_top": {"Leds": ((1, 8), (0, 9)), "Highs": ((1,), (0,))},
@@ -104,7 +103,7 @@ RANGES = {
 
 
 def sources() -> list[Path]:
-    names = ("ecp5.f", "ecp5_sdram.f", "gowin.f", "ecp5_selftest.f")
+    names = ("ecp5.f", "gowin.f", "ecp5_selftest.f")
     lists = ((RTL, "voxrt.f"), *((DESIGNS, name) for name in names))
     named = [
         folder / line

@@ -55,6 +55,7 @@ module tb;
     .s_axil_rready(rready),
     .s_axil_rdata(rdata),
     .s_axil_rresp(rresp),
+    .interrupt_o(),
     .bram_en_i(bram_en),
     .bram_we_i(bram_we),
     .bram_addr_i(bram_addr),
