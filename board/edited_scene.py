@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 
     from voxrt.board.scene import Scene
 
+_IDS = tuple(str(number) for number in range(256))
+_BLACK, _DULL = np.zeros((256, 3), np.uint8), np.zeros(256, np.bool_)
+
 
 def rom_of(scene: Scene) -> Rom:
     """Give the memory of a scene, with the materials that it uses.
@@ -35,3 +38,13 @@ def with_materials(scene: Scene, materials: Sequence[Material]) -> Scene:
     for number, material in enumerate(materials):
         colours[number], mirrors[number] = material.colour, material.mirror
     return replace(scene, colours=colours, mirrors=mirrors, names=tuple(material.name for material in materials))
+
+
+def with_numbers(scene: Scene) -> Scene:
+    """Give the materials of a scene their ids as names and one colour, so that worlds keep the ids."""
+    return replace(scene, names=_IDS, colours=_BLACK, mirrors=_DULL)
+
+
+def same_materials(scene: Scene, other: Scene) -> bool:
+    """Whether two scenes have the same colours and mirrors."""
+    return np.array_equal(scene.colours, other.colours) and np.array_equal(scene.mirrors, other.mirrors)

@@ -45,11 +45,15 @@ class World:
     undo_steps
         The edits of all authors that can be undone, 0 … 1,000,000. They are forgotten early where an edit needs their
         words.
+    root
+        Another word that is the root, as word 0 is: it is the live root then, and blocks that it does not reach are
+        free. None: word 0, and all blocks are in use. Where the memory stores equal blocks more than once, word 0 is
+        the live root of a memory that does not.
 
     Raises
     ------
     TypeError, ValueError
-        A value of another type, or out of range.
+        A value of another type, or out of range, or `root` is no such word.
     DoesNotFitError
         The memory has more than `words`.
 
@@ -68,17 +72,20 @@ class World:
     32768
     """
 
-    def __init__(self, rom: Rom, *, words: int | None = None, undo_steps: int = 100) -> None:
+    def __init__(self, rom: Rom, *, words: int | None = None, undo_steps: int = 100, root: int | None = None) -> None:
         self._rom = instance("rom", rom, Rom)
         self._limit = _MOST_WORDS if words is None else whole("words", words, 1, _MOST_WORDS)
         steps = whole("undo_steps", undo_steps, 0, 1_000_000)
+        present = rom.octree.words
+        if root is not None and present[whole("root", root, 0, len(present) - 1)] != present[0]:
+            raise ValueError(f"word {root} is not that of the root, as word 0 is")
         self._materials = rom.materials
         if len(rom.octree.words) > self._limit:
             raise DoesNotFitError(
                 f"{rom.name}: its {len(rom.octree.words):,} words do not fit the {self._limit:,} of the world's memory"
             )
         self._author = 0
-        self._native = _native.World(rom.octree.words, rom.octree.depth, self._limit, steps)
+        self._native = _native.World(rom.octree.words, rom.octree.depth, self._limit, steps, root)
 
     def __repr__(self) -> str:
         return f"<World {self._rom.name!r}: depth {self.depth}, {8 * self.figures().blocks + 1:,} words>"

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from voxrt.board.device import Device
     from voxrt.board.scene import Scene
-    from voxrt.board.scene_memory import LoadedScene, Progress
+    from voxrt.board.scene_memory import Progress
     from voxrt.options.board_commands import UploadCommand
 
 
@@ -94,17 +94,14 @@ def _write_serial(path: Path, scene: Scene, port: str, progress: Progress, *, dr
             beam = fit_beam(rom, orbit(rom, SCREEN), lighting, tracer, progress=count)
             size, scale = beam.size, beam.scale
         device.prepare_orbit(orbit(rom, size), lighting, scale)
-        _write(scene, device, progress, dry_run=False, loaded=device.loaded())
+        _write(scene, device, progress, dry_run=False)
 
 
-def _write(
-    scene: Scene, device: Device, progress: Progress, *, dry_run: bool, loaded: LoadedScene | None = None
-) -> None:
+def _write(scene: Scene, device: Device, progress: Progress, *, dry_run: bool) -> None:
     from voxrt.board.scene_memory import SceneMemory  # noqa: PLC0415 - only this command needs it
 
-    memory = SceneMemory(device, loaded)
     with board_errors():
         if dry_run:
-            memory.check(scene)
+            SceneMemory(device).check(scene)
         else:
-            memory.load(scene, progress)
+            SceneMemory(device, device.loaded()).load(scene, progress)
