@@ -288,7 +288,9 @@ class SceneMemory:
         try:
             self._device.write_materials(scene.colours, scene.mirrors)
             self._device.apply_patch(moved_patch(patch, offset), scene.depth)
-            self._device.select_scene(offset + patch.root, scene.depth)  # a serial board takes its cameras with it
+            # A serial board takes its cameras with this, and keeps the materials in the list that it shows again.
+            self._device.write_materials(scene.colours, scene.mirrors)
+            self._device.select_scene(offset + patch.root, scene.depth)
             if try_scene is not None:
                 try_scene()
         except BaseException as error:
