@@ -10,6 +10,7 @@ import numpy as np
 from voxrt.board.errors import Refused
 from voxrt.board.scene import Scene, check_memory
 from voxrt.octree.words import EMPTY, is_leaf, move_pointers
+from voxrt.sim.engine_arguments import mirrors_of, palette_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -101,8 +102,8 @@ def read_back(
         first, end = _span(blocks, root)
         if end > capacity or (blocks % 8 != 1).any():
             return None  # whatever was in the memory at power-on
-    colours, mirrors = np.zeros((256, 3), np.uint8), np.zeros(256, np.bool_)
-    found = cut_out(words, start, root, Scene("the scene on the board", depth, words, colours, mirrors))
+    scene = Scene("the scene on the board", depth, words, palette_of(()), mirrors_of(()))
+    found = cut_out(words, start, root, scene)
     try:
         check_memory(found.scene.words, depth)
     except Refused:

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 
     from voxrt.board.view import Camera, Lighting, Triple
 
+MEMORY_SUFFIXES = (".blob", ".mem")
+"""Suffixes of the files of an octree memory that a device takes."""
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Scene:
@@ -70,6 +73,16 @@ class Scene:
     def crc32(self) -> int:
         """CRC-32 of the words as little-endian bytes."""
         return zlib.crc32(self.words.astype("<u4").tobytes())
+
+
+def check_size(scene: Scene, holder: str, capacity: int, depth: int) -> None:
+    """Refuse a scene that has more words or levels than what shall hold it."""
+    for unit, count, verb, most in (
+        ("words", len(scene.words), "holds", capacity),
+        ("levels", scene.depth, "takes", depth),
+    ):
+        if count > most:
+            raise Refused(f"{scene.name} has {count} {unit} and {holder} {verb} {most}; build it with a smaller depth")
 
 
 def check_memory(words: NDArray[np.uint32], depth: int, roots: tuple[int, ...] = (0,)) -> None:

@@ -12,7 +12,7 @@ from voxrt.board.edited_scene import rom_of, same_materials, with_numbers
 from voxrt.board.errors import DeviceError, Refused
 from voxrt.board.loaded_scene import LoadedScene, cut_out
 from voxrt.board.patch_writes import check_kept, moved_patch
-from voxrt.board.scene import check_memory
+from voxrt.board.scene import check_memory, check_size
 from voxrt.octree import Box, World
 from voxrt.octree.words import EMPTY, move_pointers
 from voxrt.voxelize import DoesNotFitError
@@ -89,16 +89,7 @@ class SceneMemory:
 
     def _check_size(self, scene: Scene) -> None:
         identity = self._device.identity
-        if len(scene.words) > identity.capacity:
-            raise Refused(
-                f"{scene.name} has {len(scene.words)} words and {identity.name} holds {identity.capacity}; "
-                "build it with a smaller depth"
-            )
-        if scene.depth > identity.depth:
-            raise Refused(
-                f"{scene.name} has {scene.depth} levels and {identity.name} takes {identity.depth}; "
-                "build it with a smaller depth"
-            )
+        check_size(scene, identity.name, identity.capacity, identity.depth)
 
     def select_frame(self, number: int) -> None:
         """Show a frame of the loaded scene's animation from the next frame of the device on: one register write.

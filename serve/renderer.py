@@ -338,15 +338,7 @@ class Renderer:
             side, farthest = 16 << scene.depth, self.device.identity.position_limit - 1
             place = min(side, farthest), min(2 * side, farthest), min(side, farthest)
             return replace(view, lighting=replace(view.lighting, position=place))
-        built_in = self.device.identity.features
-        return replace(
-            view,
-            lighting=replace(
-                lighting,
-                on=lighting.on and "light" in built_in,
-                bounces=lighting.bounces if "mirrors" in built_in else 0,
-            ),
-        )
+        return replace(view, lighting=lighting.within(self.device.identity.features))
 
 
 def _first_size(identity: Identity) -> tuple[int, int]:
