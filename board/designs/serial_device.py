@@ -291,7 +291,8 @@ class SerialDevice:
         before = self._link.read(place, CAMERAS * CAMERA_WORDS)
         self._write_board("control", control | STEERED)
         try:
-            self._write_checked(place, cameras)
+            if not np.array_equal(before, cameras):
+                self._write_checked(place, cameras)
             self._play(writes, _SCENE_WORD)
         except DeviceError:
             self._write_checked(place, before)
