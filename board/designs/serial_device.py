@@ -126,6 +126,7 @@ class SerialDevice:
         blocks = 1 << configuration["block_bits"]
         if self.frame_buffer:
             blocks = int(link.read(SDRAM_REGISTERS["blocks"], 1)[0])
+            link.write(SDRAM_REGISTERS["page"], [0])  # a host that was killed left another one
         self.identity = Identity(
             name=f"board at {link.name}, {lanes} lane{'' if lanes == 1 else 's'}",
             version=f"{version >> 8 & 0xFF}.{version & 0xFF}",

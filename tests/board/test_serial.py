@@ -113,6 +113,13 @@ def test_words_of_an_sdram_have_pages():
     assert board.registers[0x1030] == 0
 
 
+def test_a_host_that_was_killed_left_another_page():
+    board, scene = Board(sdram=True), boxes(4)
+    show(board, scene)
+    board.registers[0x1030] = 1
+    np.testing.assert_array_equal(opened(board).loaded().scene.words, scene.words)
+
+
 def test_a_board_with_frames_keeps_the_size_of_the_screen():
     board, scene = Board(sdram=True), boxes(4)
     show(board, scene)
