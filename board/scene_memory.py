@@ -29,7 +29,7 @@ _BURST = 4096  # words per step, at least
 _STEPS = 256  # to write a scene, at most: a frame may come between two
 _PATCH_PART = 4  # a patch has a word per so many of the scene, at most
 _ROOM = 1 << 21  # words before a scene at the end of the memory that its edits may use
-_PATCH_LIMIT = 1 << 20  # words of both scenes: they are compared in one step, 0.2 s at most
+_PATCH_LIMIT = 1 << 19  # words of both scenes: they are compared in one step, in which no frame comes
 
 
 class Progress(Protocol):
