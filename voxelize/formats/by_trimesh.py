@@ -18,6 +18,7 @@ import numpy as np
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.external_files import ExternalFiles, asset_name, read_asset
 from voxrt.voxelize.formats.image_file import INSTEAD, decode_image
+from voxrt.voxelize.formats.opacity import OPAQUE_FROM
 from voxrt.voxelize.from_trimesh import trimesh_scene
 from voxrt.voxelize.warning_log import WarningLog
 
@@ -43,20 +44,22 @@ def load_off(path: str | Path, *, up: UpAxis | None = None, unit: float | None =
     """
     path = Path(path)
     scene = _loaded(path, read_asset(path), "off")
-    return _scene(path, next(iter(scene.geometry.values()), scene), up, unit)
+    return _scene(path, next(iter(scene.geometry.values()), scene), up, unit, log=WarningLog())
 
 
-def load_3mf(path: str | Path) -> Scene:
+def load_3mf(path: str | Path, *, opaque_from: float = OPAQUE_FROM) -> Scene:
     """Read a 3MF file: an object per built item, with components and colours.
 
-    AssetError where it cannot be read, or the extra ``cad`` is not installed.
+    `opaque_from`: faces of lower opacity are left out. AssetError where it cannot be read, or the extra ``cad`` is not
+    installed.
     """
     path = Path(path)
     _need(path, "lxml", "networkx")
     data = read_asset(path)
     model = _model_of(path, data)
     scene = _loaded(path, data, "3mf")
-    for name, colours in _colours_of_objects(path, model).items():
+    log = WarningLog()
+    for name, colours in _colours_of_objects(path, model, log).items():
         if name in scene.geometry and len(scene.geometry[name].faces) == len(colours):
             scene.geometry[name].visual = import_module("trimesh.visual").ColorVisuals(
                 scene.geometry[name], face_colors=colours
@@ -64,13 +67,14 @@ def load_3mf(path: str | Path) -> Scene:
     unit = next((element.get("unit") for element in _elements(path, model, "model", event="start")), None)
     if (unit or "millimeter") not in _UNITS:
         raise AssetError(path, f"has the unit {unit!r}", fix=f"use one of {', '.join(_UNITS)}")
-    return _scene(path, scene, "z", _UNITS[unit or "millimeter"])
+    return _scene(path, scene, "z", _UNITS[unit or "millimeter"], log=log, opaque_from=opaque_from)
 
 
-def load_dae(path: str | Path, *, allow_outside: bool = False) -> Scene:
+def load_dae(path: str | Path, *, allow_outside: bool = False, opaque_from: float = OPAQUE_FROM) -> Scene:
     """Read a COLLADA file: an object per geometry and node, with the colours and textures of its materials.
 
-    `allow_outside`: whether textures may stand outside the file's folder. AssetError where it cannot be read, or
+    `allow_outside`: whether textures may stand outside the file's folder. `opaque_from`: faces of lower opacity are
+    left out. AssetError where it cannot be read, or
     the extra ``cad`` is not installed.
     """
     path = Path(path)
@@ -89,12 +93,14 @@ def load_dae(path: str | Path, *, allow_outside: bool = False) -> Scene:
         material = getattr(geometry.visual, "material", None)
         factor = getattr(material, "baseColorFactor", None)
         if material is not None and factor is not None and material.baseColorTexture is None:
+            emission = np.round(np.clip(np.nan_to_num(material.emissiveFactor), 0, 1) * 255)
+            if not np.any(factor[:3]) and emission.any() and material.emissiveTexture is None:
+                factor = [*emission, factor[3]]  # what reflects nothing shows what it emits
             # The factor is sRGB, and not linear as in glTF.
             geometry.visual.material = import_module("trimesh.visual.material").SimpleMaterial(
                 diffuse=np.asarray(factor, np.uint8), name=material.name
             )
-    made = _scene(path, scene, up, unit)
-    return replace(made, warnings=made.warnings + textures.log.warnings())
+    return _scene(path, scene, up, unit, log=textures.log, opaque_from=opaque_from)
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,16 +151,27 @@ def _loaded(path: Path, data: bytes, kind: str, **options: Any) -> Any:  # noqa:
         raise AssetError(path, f"trimesh cannot read it ({type(error).__name__})", fix=_DAMAGED) from None
 
 
-def _scene(path: Path, scene: Any, up: UpAxis | None, unit: float | None) -> Scene:  # noqa: ANN401 - trimesh has no types
+def _scene(
+    path: Path,
+    scene: Any,  # noqa: ANN401 - trimesh has no types
+    up: UpAxis | None,
+    unit: float | None,
+    *,
+    log: WarningLog,
+    opaque_from: float = OPAQUE_FROM,
+) -> Scene:
     try:
-        made = trimesh_scene(scene, name=asset_name(path), up=up, unit=unit)
+        made = trimesh_scene(scene, name=asset_name(path), up=up, unit=unit, opaque_from=opaque_from)
     except KeyError as error:
         raise AssetError(path, f"shows {error}, which is not in it", fix=_DAMAGED) from None
     except (TypeError, ValueError) as error:
         raise AssetError(path, str(error), fix=_DAMAGED) from None
     if not any(len(one.mesh.triangles) for one in made.objects):
+        for warning in made.warnings:
+            if warning.kind == "transparent":
+                raise AssetError(path, f"shows nothing: {warning.message}", fix="make its colours opaque")
         raise AssetError(path, "has no triangles", fix="export it with its surface")
-    return made
+    return replace(made, warnings=made.warnings + log.warnings())
 
 
 def _model_of(path: Path, data: bytes) -> bytes:
@@ -194,10 +211,10 @@ class _Triangles:
     colours: list[tuple[str, int] | None]
 
 
-def _colours_of_objects(path: Path, model: bytes) -> dict[str, NDArray[np.uint8]]:
+def _colours_of_objects(path: Path, model: bytes, log: WarningLog) -> dict[str, NDArray[np.uint8]]:
     """Return the colours of triangles, uint8, shape (T, 4), of each object that has some, by its name in trimesh."""
     unique_name = import_module("trimesh.util").unique_name
-    groups: dict[str, list[tuple[int, ...]]] = {}
+    groups: dict[str, list[tuple[int, ...] | None]] = {}
     objects: list[_Triangles] = []
     used: set[str] = set()
     counts: dict[str, int] = {}
@@ -212,12 +229,14 @@ def _colours_of_objects(path: Path, model: bytes) -> dict[str, NDArray[np.uint8]
         rows = [_reference(one.get("pid") or own[0], one.get("p1") or own[1]) for one in element.iter("{*}triangle")]
         if any(row is not None for row in rows):
             objects.append(_Triangles(name, rows))
-    return {
-        one.name: np.array(
-            [_DEFAULT if row is None else _at(groups.get(row[0], []), row[1]) for row in one.colours], np.uint8
-        )
-        for one in objects
-    }
+    found = {one.name: [row and _at(groups.get(row[0], []), row[1]) for row in one.colours] for one in objects}
+    lost = sum(row is not None for one in objects for row in one.colours) - sum(
+        colour is not None for colours in found.values() for colour in colours
+    )
+    log.add(
+        "material-colour", "triangles with a texture, or a colour that the file lacks, got the default colour", lost
+    )
+    return {name: np.array([one or _DEFAULT for one in colours], np.uint8) for name, colours in found.items()}
 
 
 _DEFAULT = (200, 200, 200, 255)
@@ -227,15 +246,15 @@ def _reference(group: str | None, row: str | None) -> tuple[str, int] | None:
     return (group, int(row)) if group is not None and row is not None and row.isdecimal() else None
 
 
-def _at(colours: list[tuple[int, ...]], row: int) -> tuple[int, ...]:
-    return colours[row] if row < len(colours) else _DEFAULT
+def _at(colours: list[tuple[int, ...] | None], row: int) -> tuple[int, ...] | None:
+    return colours[row] if row < len(colours) else None
 
 
-def _colour(text: str) -> tuple[int, ...]:
-    """Return ``#RRGGBB`` or ``#RRGGBBAA`` as red, green, blue and opacity."""
+def _colour(text: str) -> tuple[int, ...] | None:
+    """Return ``#RRGGBB`` or ``#RRGGBBAA`` as red, green, blue and opacity; None for other text."""
     digits = text.strip().lstrip("#")
     try:
         found = bytes.fromhex(digits)
     except ValueError:
-        return _DEFAULT
-    return (*found, 255)[:4] if len(found) in (3, 4) else _DEFAULT
+        return None
+    return (*found, 255)[:4] if len(found) in (3, 4) else None
