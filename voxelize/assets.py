@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from voxrt.voxelize import arguments
 from voxrt.voxelize.errors import AssetError, DoesNotFitError, SceneWarning
+from voxrt.voxelize.formats.external_files import refuse_endless
 from voxrt.voxelize.point_cloud import MOST_POINTS
 
 if TYPE_CHECKING:
@@ -180,12 +181,11 @@ def _suffix(path: Path) -> str:
     if address := _ADDRESS.match(str(path)):  # a path has lost one of the slashes
         shown = f"{address[1]}://{address[2]}"
         raise AssetError(shown, "is an address, and files are read from folders alone", fix="download it first")
+    refuse_endless(path)
     try:
-        is_file, is_folder, is_there = path.is_file(), path.is_dir(), path.exists()
+        is_file, is_folder = path.is_file(), path.is_dir()
     except OSError:  # the name is longer than any file's
-        is_file = is_folder = is_there = False
-    if is_there and not (is_file or is_folder):
-        raise AssetError(path, "is a pipe or a device", fix="save it to a file, and name that")
+        is_file = is_folder = False
     if not is_file:
         problem = "is a folder, not a file" if is_folder else "no such file"
         raise AssetError(path, problem, fix="check the path")
