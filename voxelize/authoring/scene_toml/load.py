@@ -16,7 +16,7 @@ from voxrt.voxelize.authoring.scene_toml.validation import CheckedFile, check_fi
 from voxrt.voxelize.authoring.solid import Solid
 from voxrt.voxelize.authoring.transforms import placement
 from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.formats.external_files import ALLOW_OUTSIDE, ExternalFiles, asset_name
+from voxrt.voxelize.formats.external_files import ALLOW_OUTSIDE, ExternalFiles, asset_name, read_asset
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -53,9 +53,7 @@ def load_scene_toml(
     """
     path = Path(path)
     try:
-        text = path.read_text(encoding="utf-8-sig")  # some editors begin a file with a mark
-    except OSError as error:
-        raise AssetError(path, f"cannot be read: {error.strerror}", fix="check the path and its permissions") from None
+        text = read_asset(path).decode("utf-8-sig")  # some editors begin a file with a mark
     except UnicodeDecodeError:
         raise AssetError(path, "is not UTF-8 text", fix="save it as UTF-8") from None
     for_assets: dict[str, Any] = {"opaque_from": opaque_from, "points": points}
