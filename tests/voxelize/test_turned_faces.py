@@ -156,6 +156,38 @@ def test_every_face_stored_twice_counts_once():
         assert (dense(result.voxels) != 0).sum() == 11 * 9 * 7
 
 
+def cut_apart(quad, choices):
+    """Cut a quad into one, two or four: its neighbours keep their long edges, and T-junctions come about."""
+    corners = [np.array(corner, float) for corner in quad]
+    middles = [(corners[i] + corners[(i + 1) % 4]) / 2 for i in range(4)]
+    centre = sum(corners) / 4
+    return choices.choice(
+        [
+            [corners],
+            [[corners[0], middles[0], middles[2], corners[3]], [middles[0], corners[1], corners[2], middles[2]]],
+            [[corners[0], corners[1], middles[1], middles[3]], [middles[3], middles[1], corners[2], corners[3]]],
+            [[corners[i], middles[i], centre, middles[i - 1]] for i in range(4)],
+        ]
+    )
+
+
+@pytest.mark.parametrize("turned", [0.03, 0.3])
+@pytest.mark.parametrize("seed", range(6))
+def test_faces_are_wound_alike_across_t_junctions(turned, seed):
+    choices = random.Random(seed)
+    block = np.pad(np.ones((2, 3, 1), int), 1)
+    quads = []
+    for cell, axis in walls_of(block):
+        outwards = quad_of(cell, axis) if block[cell] else quad_of(cell, axis)[::-1]
+        for quad in cut_apart(outwards, choices):
+            times = choices.choice([1, 1, 1, 1, 2])
+            quads += [quad[::-1] if choices.random() < turned else quad for _ in range(times)]
+    result = voxelize(one_object(mesh_of(quads)), GRID)
+    expected = np.zeros((16, 16, 16), bool)
+    expected[4:10, 4:13, 4:7] = True
+    np.testing.assert_array_equal(dense(result.voxels) != 0, expected)
+
+
 def klein_bottle(n=24):
     """The figure-eight immersion, closed and one-sided."""
     u, v = np.meshgrid(np.arange(n) * 2 * np.pi / n, (np.arange(n) + 0.5) * 2 * np.pi / n, indexing="ij")

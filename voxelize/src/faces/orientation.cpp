@@ -57,8 +57,9 @@ struct Component {
 
 class Faces {
 public:
-    Faces(const MeshEdges& edges, const std::vector<Vertex>& vertices, bool flat)
-        : edges_(edges), at_(vertices), flat_(flat), count_(uint32_t(edges.face_count())), connected_(count_) {
+    Faces(const MeshEdges& whole, const MeshEdges& edges, const std::vector<Vertex>& vertices, bool flat)
+        : whole_(whole), edges_(edges), at_(vertices), flat_(flat), count_(uint32_t(edges.face_count())),
+          connected_(count_) {
         edges_.each([&](uint32_t, Uses uses) {
             for (const EdgeUse& use : uses)
                 connected_.merge(use.face, uses[0].face);
@@ -93,17 +94,20 @@ private:
     void find_components() {
         edges_.each([&](uint32_t, Uses uses) {
             const bool balanced = uses.size() == 1 || surplus_of(uses) == 0;
-            bool repeated = false;
-            each_repeated(uses, sorted_, [&](const EdgeUse&, const EdgeUse&) { repeated = true; });
-            if (balanced && !repeated && !(flat_ && uses.size() > 2))
-                return;
-            uint32_t& index = component_of_[connected_.find(uses[0].face)];
-            if (index == UINT32_MAX) {
-                index = uint32_t(components_.size());
-                components_.emplace_back();
-            }
-            components_[index].is_balanced &= balanced;
+            if (!balanced || (flat_ && uses.size() > 2))
+                found_at(uses[0].face).is_balanced &= balanced;
         });
+        whole_.each([&](uint32_t, Uses uses) {
+            each_repeated(uses, sorted_, [&](const EdgeUse& first, const EdgeUse&) { found_at(first.face); });
+        });
+    }
+    Component& found_at(uint32_t face) {
+        uint32_t& index = component_of_[connected_.find(face)];
+        if (index == UINT32_MAX) {
+            index = uint32_t(components_.size());
+            components_.emplace_back();
+        }
+        return components_[index];
     }
     bool is_ours(uint32_t face) { return component_of_[connected_.find(face)] != UINT32_MAX; }
     Component& own(uint32_t face) { return components_[component_of_[connected_.find(face)]]; }
@@ -115,7 +119,7 @@ private:
         std::iota(first_.begin(), first_.end(), 0u);
         opposed_.assign(count_, false);
         surplus_.assign(count_, 1);
-        edges_.each([&](uint32_t, Uses uses) {
+        whole_.each([&](uint32_t, Uses uses) {
             each_repeated(uses, sorted_, [&](const EdgeUse& first, const EdgeUse& again) {
                 if (first_[again.face] != again.face)
                     return;
@@ -290,7 +294,7 @@ private:
         return std::hypot(uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx);
     }
 
-    const MeshEdges& edges_;
+    const MeshEdges &whole_, &edges_;
     const std::vector<Vertex>& at_;
     bool flat_;
     uint32_t count_;
@@ -308,16 +312,18 @@ private:
 
 } // namespace
 
-std::shared_ptr<const Orientation> find_orientation(const MeshEdges& edges, const std::vector<Vertex>& vertices,
-                                                    bool flat) {
+std::shared_ptr<const Orientation> find_orientation(const MeshEdges& whole, const MeshEdges& edges,
+                                                    const std::vector<Vertex>& vertices, bool flat) {
     bool consistent = true;
-    std::vector<EdgeUse> sorted;
     edges.each([&](uint32_t, Uses uses) {
         if (uses.size() > 1)
             consistent = consistent && surplus_of(uses) == 0 && (!flat || uses.size() == 2);
+    });
+    std::vector<EdgeUse> sorted;
+    whole.each([&](uint32_t, Uses uses) {
         each_repeated(uses, sorted, [&](const EdgeUse&, const EdgeUse&) { consistent = false; });
     });
-    return consistent ? nullptr : Faces(edges, vertices, flat).orient();
+    return consistent ? nullptr : Faces(whole, edges, vertices, flat).orient();
 }
 
 bool has_repeated_faces(const MeshView& mesh, const std::vector<uint64_t>& vertex_keys) {

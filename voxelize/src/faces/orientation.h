@@ -44,11 +44,12 @@ struct Orientation {
     }
 };
 
-/// Null where all is as the file says. `vertices`: by vertex of the mesh, in grid space or in any finer lattice.
-/// `flat`: some of the surface has no volume, so that consistent faces may be two sides of one. Linear in the faces but
-/// for sorting those at edges of more than two.
-std::shared_ptr<const Orientation> find_orientation(const MeshEdges& edges, const std::vector<Vertex>& vertices,
-                                                    bool flat);
+/// Null where all is as the file says. `whole`: the edges of the faces. `edges`: the same, or cut where other edges
+/// meet them (mesh/cut_edges.h). `vertices`: by vertex of the mesh, in grid space or in any finer lattice. `flat`: some
+/// of the surface has no volume, so that consistent faces may be two sides of one. Linear in the faces but for sorting
+/// those at edges of more than two.
+std::shared_ptr<const Orientation> find_orientation(const MeshEdges& whole, const MeshEdges& edges,
+                                                    const std::vector<Vertex>& vertices, bool flat);
 
 /// Whether some triangle is there twice, either way around; vertices at one position count as one. Compares 31 bits of
 /// a hash, so about one triangle of 10^9 is mistaken for another. About 10 ns per triangle.
