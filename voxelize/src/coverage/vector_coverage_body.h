@@ -12,6 +12,7 @@
 #include "../vectors/lanes.h"
 #include "covered_bytes.h"
 #include "vector_coverage.h"
+#include "vector_pieces.h"
 
 namespace voxrt::voxelize {
 namespace {
@@ -330,7 +331,7 @@ struct Area {
 };
 
 template <class Wide, class Rest>
-inline void cover_area(const Corners& t, const Area& area, bool crosses, TileSurface& surface) {
+inline void cover_area(const Corners& t, const Area& area, bool crosses, Pieces* pieces, TileSurface& surface) {
     const auto [x0, x1, y0, y1, top] = area;
     const int first_group = x0 / kLanes, first_column = first_group * kLanes;
     const Rows rows(t, y0, y1 - y0 + 1, x0, x1, top, crosses);
@@ -360,6 +361,10 @@ inline void cover_area(const Corners& t, const Area& area, bool crosses, TileSur
             alignas(32) int32_t lo[kLanes], hi[kLanes];
             store_as_int(lo, z.lo);
             store_as_int(hi, larger(z.hi, z.lo - all(1)));
+            if (pieces != nullptr)
+                for (int i = 0; i < kLanes; ++i)
+                    if (lo[i] <= hi[i] && (covered >> (group * kLanes + i) & 1) != 0)
+                        pieces->add_column(group * kLanes + i, y, lo[i], hi[i]);
             for (int brick = first_brick; brick <= last_brick; brick += IntervalBytes::kBricks) {
                 const IntervalBytes bytes(lo, hi, brick * kBrickSide);
                 for (int i = 0; i < IntervalBytes::kBricks && brick + i <= last_brick; ++i)
@@ -373,7 +378,7 @@ inline void cover_area(const Corners& t, const Area& area, bool crosses, TileSur
 
 } // namespace
 
-void VOXRT_COVER_BY_VECTORS(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w, bool crosses,
+void VOXRT_COVER_BY_VECTORS(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w, const Wanted& wanted,
                             TileSurface& surface) {
     auto least = [](int32_t u, int32_t v, int32_t s) { return u < v ? (u < s ? u : s) : (v < s ? v : s); };
     auto most = [](int32_t u, int32_t v, int32_t s) { return u > v ? (u > s ? u : s) : (v > s ? v : s); };
@@ -397,10 +402,18 @@ void VOXRT_COVER_BY_VECTORS(const Vertex& a, const Vertex& b, const Vertex& c, c
         return high - low;
     };
     const Area area{x0, x1, y0, y1, w.top};
-    if (width(t.x) < kNarrowExtent && width(t.y) < kNarrowExtent && width(t.z) < kNarrowExtent)
-        cover_area<int64_t, Lanes>(t, area, crosses, surface);
-    else
-        cover_area<int128, LongLanes>(t, area, crosses, surface);
+    if (!(width(t.x) < kNarrowExtent && width(t.y) < kNarrowExtent && width(t.z) < kNarrowExtent)) {
+        cover_area<int128, LongLanes>(t, area, wanted.crosses, nullptr, surface);
+    } else if (!wanted.pieces) {
+        cover_area<int64_t, Lanes>(t, area, wanted.crosses, nullptr, surface);
+    } else {
+        double z[3];
+        for (int i = 0; i < 3; ++i)
+            z[i] = corners[i]->z;
+        Pieces pieces(t.x, t.y, z, surface);
+        cover_area<int64_t, Lanes>(t, area, wanted.crosses, &pieces, surface);
+        pieces.finish();
+    }
 }
 
 } // namespace voxrt::voxelize

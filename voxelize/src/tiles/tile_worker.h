@@ -121,15 +121,13 @@ private:
     }
 
     void add_solid(const PartView& part, const Window& window, Scratch& s) const {
-        const double* f = part.frame;
-        auto whole = [&](int i) { return int64_t(snap(f[i], part.object)); };
         int64_t claimed = 0;
         if (part.kind == PartKind::box)
             claimed = claim_convex(s.tile, s.rule.get(), window, box_of(part), fills(fill_), part.material);
         else if (part.kind == PartKind::ball)
             claimed = claim_convex(s.tile, s.rule.get(), window, ball_of(part), fills(fill_), part.material);
         else
-            claimed = claim_convex(s.tile, s.rule.get(), window, Ellipsoid(f), fills(fill_), part.material);
+            claimed = claim_convex(s.tile, s.rule.get(), window, Ellipsoid(part.frame), fills(fill_), part.material);
         s.object_voxels[part.object] += claimed;
     }
 
@@ -206,6 +204,9 @@ private:
                 else
                     cover_triangle<false>(a, b, c, window, analysis.inverted, receiver);
             };
+            const bool by_vectors = cover_by_vectors_ != nullptr &&
+                                    (part.material != 0 || !mesh.rasters.has_raster(t)) && fits_vectors(a, b, c);
+            Wanted wanted{counts && Cross && !has_rule};
             if (Cross && has_rule) {
                 if (is_shell_only) {
                     HeldSurface held(surface);
@@ -214,7 +215,9 @@ private:
                     CrossingsAlone crossings(surface);
                     if (counts) {
                         find_centres<true>(a, b, c, window, crossings);
-                        add_pieces(a, b, c, window, surface);
+                        wanted.pieces = by_vectors && fits_pieces(a, b, c, window.top);
+                        if (!wanted.pieces)
+                            add_pieces(a, b, c, window, surface);
                     }
                 } else if (counts && !has_caps) {
                     find_centres<true>(a, b, c, window, surface);
@@ -224,11 +227,10 @@ private:
                         cross_triangle(a, b, c, window, surface);
                 }
             }
-            if (part.material != 0 || !mesh.rasters.has_raster(t)) {
-                if (cover_by_vectors_ != nullptr && fits_vectors(a, b, c))
-                    cover_by_vectors_(a, b, c, window, counts && Cross && !has_rule, surface);
-                else
-                    cover_with(surface);
+            if (by_vectors) {
+                cover_by_vectors_(a, b, c, window, wanted, surface);
+            } else if (part.material != 0 || !mesh.rasters.has_raster(t)) {
+                cover_with(surface);
             } else {
                 const TriangleRaster raster(a, reversed ? c : b, reversed ? b : c, mesh.rasters, t); // as authored
                 RasterSurface rastered(surface, raster);
