@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <vector>
 
 namespace voxrt::voxelize {
@@ -119,8 +120,26 @@ private:
                 return table_[at].cube;
     }
 
+    /// Sorts by code. Bricks come in ascending runs, each of a tile's cube.
     static void sort(std::vector<RuleBrick>& bricks) {
-        std::sort(bricks.begin(), bricks.end(), [](const auto& a, const auto& b) { return a.code < b.code; });
+        const auto is_before = [](const auto& a, const auto& b) { return a.code < b.code; };
+        std::vector<std::span<const RuleBrick>> runs;
+        for (auto at = bricks.cbegin(); at != bricks.cend();) {
+            const auto end = std::adjacent_find(at, bricks.cend(), [&](auto& a, auto& b) { return !is_before(a, b); });
+            const auto next = end == bricks.cend() ? end : end + 1;
+            runs.emplace_back(at, next);
+            at = next;
+        }
+        if (runs.size() < 2)
+            return;
+        std::sort(runs.begin(), runs.end(), [](auto& a, auto& b) { return a.front().code < b.front().code; });
+        std::vector<RuleBrick> sorted;
+        sorted.reserve(bricks.size());
+        for (const auto& run : runs)
+            sorted.insert(sorted.end(), run.begin(), run.end());
+        if (!std::is_sorted(sorted.begin(), sorted.end(), is_before))
+            std::sort(sorted.begin(), sorted.end(), is_before);
+        bricks = std::move(sorted);
     }
 
     void index() {

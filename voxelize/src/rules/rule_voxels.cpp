@@ -33,6 +33,10 @@ public:
         : voxels_(around), bricks_(around, std::move(findings.bricks)), owned_(std::move(findings.owned)),
           mixed_(std::move(findings.mixed)) {
         std::sort(mixed_.begin(), mixed_.end(), [](const auto& a, const auto& b) { return a.code < b.code; });
+        has_several_objects_ = std::any_of(owned_.begin(), owned_.end(),
+                                           [this](const auto& one) { return one.object != owned_[0].object; });
+        if (!has_several_objects_)
+            return; // their order does not matter
         std::sort(owned_.begin(), owned_.end(), [](const OwnedSurface& a, const OwnedSurface& b) {
             return a.code != b.code ? a.code < b.code : a.object < b.object;
         });
@@ -43,7 +47,7 @@ public:
     /// Finds the voxels of parts that have none of their own. The bricks must be final.
     void find_orphans(const Workers& workers) {
         orphans_.assign(bricks_.size(), Slices{});
-        if (std::all_of(owned_.begin(), owned_.end(), [this](const auto& o) { return o.object == owned_[0].object; }))
+        if (!has_several_objects_)
             return; // nothing else could take a material
         for_each_brick(workers, [this](size_t i) {
             if (!is_empty(bricks_[i].removed()))
@@ -53,7 +57,7 @@ public:
 
     /// Finds by areas what shows of several materials. The bricks and orphans must be final.
     void find_shown(const BrickArea& area, const FindAreas& find_areas, const Workers& workers) {
-        if (has_one_material())
+        if (material_of_surfaces() != 0)
             return;
         std::vector<ContestedVoxels> found((bricks_.size() + kBricks - 1) / kBricks);
         for_each_brick(workers, [&](size_t i) {
@@ -78,9 +82,15 @@ public:
     /// The bricks of an area that differ from what is touched.
     ReplacedBricks replaced(const BrickArea& area, const Workers& workers) const {
         std::vector<ReplacedBricks> found((bricks_.size() + kBricks - 1) / kBricks);
+        const uint8_t only = material_of_all();
         for_each_brick(workers, [&](size_t i) {
-            if (is_in(area, bricks_[i].code))
+            const RuleBrick& brick = bricks_[i];
+            if (!is_in(area, brick.code))
+                return;
+            if (only == 0)
                 add_replaced(i, found[i / kBricks]);
+            else if (!is_empty(brick.removed()))
+                found[i / kBricks].bricks.push_back({brick.code, morton_order(brick.filled), only, 0});
         });
         ReplacedBricks all;
         for (ReplacedBricks& part : found) {
@@ -130,11 +140,18 @@ private:
         return x >= area.x0 && x < area.x1 && y >= area.y0 && y < area.y1;
     }
 
-    bool has_one_material() const {
-        const auto is_other = [first = voxels_.brick_materials.empty() ? 0 : voxels_.brick_materials[0]](uint8_t m) {
-            return m == 0 || m != first;
-        };
-        return std::none_of(voxels_.brick_materials.begin(), voxels_.brick_materials.end(), is_other);
+    /// The only material of all bricks with surface, or 0.
+    uint8_t material_of_surfaces() const {
+        const auto& materials = voxels_.brick_materials;
+        const uint8_t first = materials.empty() ? 0 : materials[0];
+        return std::all_of(materials.begin(), materials.end(), [first](uint8_t m) { return m == first; }) ? first : 0;
+    }
+
+    /// The only material of all voxels, or 0.
+    uint8_t material_of_all() const {
+        const auto& insides = voxels_.octant_materials;
+        const uint8_t only = material_of_surfaces();
+        return std::all_of(insides.begin(), insides.end(), [only](uint8_t m) { return m == only; }) ? only : 0;
     }
 
     /// The material with the largest sum of areas over some voxels, the first of several; 0 where there is none.
@@ -391,7 +408,8 @@ private:
 
     const SparseVoxels& voxels_;
     RuleBricks bricks_;
-    std::vector<OwnedSurface> owned_; // by code and object
+    std::vector<OwnedSurface> owned_; // by code and object, where there are several
+    bool has_several_objects_ = false;
     std::vector<MixedSurface> mixed_; // by code
     std::vector<Slices> orphans_;
     std::vector<ShownVoxel> shown_; // by brick
