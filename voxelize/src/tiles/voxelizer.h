@@ -36,6 +36,7 @@
 #include "../scene/object_mode.h"
 #include "../scene/parts.h"
 #include "../work/interrupt.h"
+#include "../work/large_vector.h"
 
 #include <functional>
 #include <memory>
@@ -56,7 +57,7 @@ SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t obje
 
 /// Which part of each voxel with surface an object fills, whatever other objects there are.
 struct ObjectVolumes {
-    std::vector<VoxelVolume> voxels; // by object
+    LargeVector<VoxelVolume> voxels; // by object
     std::vector<int64_t> whole;      // by object: voxels that it fills and that have no surface of it
     std::vector<uint8_t> known;      // by object: 0 where it has surfaces with openings, balls or ellipsoids
 };
