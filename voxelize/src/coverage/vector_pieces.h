@@ -180,7 +180,7 @@ private:
             moments.add_below(line, end, line.x);
     }
 
-    // Of what of the triangle is lower than `height`, which is between its lowest corner and its highest.
+    // Measures what of the triangle is lower than `height`, which is between its lowest corner and its highest.
     Moments below(const Line (&lines)[3], const Lanes (&tops)[3], const Lanes& height) const {
         Moments found;
         Lanes ends[3], climbs[3];

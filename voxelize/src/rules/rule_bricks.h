@@ -103,6 +103,42 @@ public:
         return found;
     }
 
+    /// The voxels of a brick whose neighbour at a side belongs to a set. `of`: the set in a listed brick;
+    /// `whole`: whether all of a brick that is solid as a whole belongs to it.
+    template <class Of> static Slices shifted_by(const std::array<uint32_t, 27>& around, int side, Of of, bool whole) {
+        auto set = [&](uint32_t n) {
+            if (n < kFull)
+                return of(n);
+            Slices all;
+            all.fill(n == kFull && whole ? ~uint64_t{0} : 0);
+            return all;
+        };
+        constexpr uint64_t first = 0x0101'0101'0101'0101;
+        const Slices here = set(around[13]), there = set(around[size_t(kSides[side])]);
+        Slices found;
+        for (int z = 0; z < kBrickSide; ++z)
+            switch (side) {
+            case 0:
+                found[z] = (here[z] & ~(first << 7)) << 1 | (there[z] & first << 7) >> 7;
+                break;
+            case 1:
+                found[z] = (here[z] & ~first) >> 1 | (there[z] & first) << 7;
+                break;
+            case 2:
+                found[z] = here[z] << 8 | there[z] >> 56;
+                break;
+            case 3:
+                found[z] = here[z] >> 8 | there[z] << 56;
+                break;
+            case 4:
+                found[z] = z > 0 ? here[z - 1] : there[kBrickSide - 1];
+                break;
+            default:
+                found[z] = z + 1 < kBrickSide ? here[z + 1] : there[0];
+            }
+        return found;
+    }
+
 private:
     static constexpr int kCubeBits = 9; // of the code of a brick in its cube of 8 x 8 x 8 bricks
     static constexpr size_t kCubeBricks = size_t{1} << kCubeBits;

@@ -1,5 +1,6 @@
 #include "rule_voxels.h"
 
+#include "brick_materials.h"
 #include "brick_window.h"
 #include "replaced_bricks.h"
 #include "rule_bricks.h"
@@ -9,23 +10,6 @@
 
 namespace voxrt::voxelize {
 namespace {
-
-/// The materials of a solid brick's voxels: one, or by Morton code in the brick.
-struct BrickMaterials {
-    uint8_t only = 0;
-    const std::array<uint8_t, 512>* cells = nullptr;
-    uint8_t at(size_t place) const { return cells == nullptr ? only : (*cells)[place]; }
-};
-
-BrickMaterials materials_of(const SparseVoxels& voxels, uint64_t code) {
-    const auto& codes = voxels.brick_codes;
-    const auto brick = size_t(std::lower_bound(codes.begin(), codes.end(), code) - codes.begin());
-    if (brick == codes.size() || codes[brick] != code)
-        return {voxels.octant_materials[find_octant(voxels, code)]};
-    if (voxels.brick_rows[brick] < 0)
-        return {voxels.brick_materials[brick]};
-    return {0, &voxels.cells[size_t(voxels.brick_rows[brick])]};
-}
 
 class RuledVoxels {
 public:
@@ -184,10 +168,10 @@ private:
         Slices lost[6], mixed = mixed_in(brick.code), forced{}, any = mixed, visible{};
         BrickMaterials beside[6];
         for (int side = 0; side < 6; ++side) {
-            lost[side] = shifted_by(around, side, removed, false);
-            const Slices lost_mixed = shifted_by(around, side, removed_mixed, false);
-            const Slices lying = shifted_by(around, side, orphans, false);
-            const Slices hidden = shifted_by(around, side, filled, true);
+            lost[side] = RuleBricks::shifted_by(around, side, removed, false);
+            const Slices lost_mixed = RuleBricks::shifted_by(around, side, removed_mixed, false);
+            const Slices lying = RuleBricks::shifted_by(around, side, orphans, false);
+            const Slices hidden = RuleBricks::shifted_by(around, side, filled, true);
             for (size_t z = 0; z < kBrickSide; ++z) {
                 visible[z] |= ~hidden[z];
                 mixed[z] |= lost_mixed[z];
@@ -298,45 +282,10 @@ private:
     template <class Of> Slices beside(const std::array<uint32_t, 27>& around, Of of, bool whole) const {
         Slices found{};
         for (int side = 0; side < 6; ++side) {
-            const Slices shifted = shifted_by(around, side, of, whole);
+            const Slices shifted = RuleBricks::shifted_by(around, side, of, whole);
             for (int z = 0; z < kBrickSide; ++z)
                 found[z] |= shifted[z];
         }
-        return found;
-    }
-
-    /// The voxels of a brick whose neighbour at a side belongs to a set.
-    template <class Of> Slices shifted_by(const std::array<uint32_t, 27>& around, int side, Of of, bool whole) const {
-        auto set = [&](uint32_t n) {
-            if (n < RuleBricks::kFull)
-                return of(n);
-            Slices all;
-            all.fill(n == RuleBricks::kFull && whole ? ~uint64_t{0} : 0);
-            return all;
-        };
-        constexpr uint64_t first = 0x0101'0101'0101'0101;
-        const Slices here = set(around[13]), there = set(around[size_t(kSides[side])]);
-        Slices found;
-        for (int z = 0; z < kBrickSide; ++z)
-            switch (side) {
-            case 0:
-                found[z] = (here[z] & ~(first << 7)) << 1 | (there[z] & first << 7) >> 7;
-                break;
-            case 1:
-                found[z] = (here[z] & ~first) >> 1 | (there[z] & first) << 7;
-                break;
-            case 2:
-                found[z] = here[z] << 8 | there[z] >> 56;
-                break;
-            case 3:
-                found[z] = here[z] >> 8 | there[z] << 56;
-                break;
-            case 4:
-                found[z] = z > 0 ? here[z - 1] : there[kBrickSide - 1];
-                break;
-            default:
-                found[z] = z + 1 < kBrickSide ? here[z + 1] : there[0];
-            }
         return found;
     }
 
@@ -348,8 +297,8 @@ private:
         const Slices bare = without(brick.filled, brick.surface);
         Slices takers[6], done{};
         for (int side = 0; side < 6; ++side) {
-            const Slices shown = shifted_by(around, side, removed, false);
-            const Slices lying = shifted_by(around, side, orphans, false);
+            const Slices shown = RuleBricks::shifted_by(around, side, removed, false);
+            const Slices lying = RuleBricks::shifted_by(around, side, orphans, false);
             for (int z = 0; z < kBrickSide; ++z) {
                 takers[side][z] = ((shown[z] & bare[z]) | (lying[z] & brick.filled[z] & brick.surface[z])) & ~done[z];
                 done[z] |= takers[side][z];

@@ -130,8 +130,8 @@ public:
     /// area seen from above is wrong by 6 d at most and the volume by 8 d, once per triangle and column: pieces of one
     /// column share the corners where planes between its voxels cut. Rounding in the cell is a few u per piece, of at
     /// most 2^16. Whole cells below a plane have an error of 32 u; vector_pieces.h has less than its cuts. All that is
-    /// below 2^-32 per triangle. Sums of N
-    /// numbers up to N in size add N^2 u, and those along 2^16 voxels of a column N 2^-37.
+    /// below 2^-32 per triangle. Sums of N numbers up to N in size add N^2 u, and those along 2^16 voxels of a column
+    /// N 2^-37.
     double error_bound() const { return triangles_ * 0x1p-31 + triangles_ * triangles_ * 0x1p-52; }
 
     /// Calls take(part) with the parts whose volumes a voxel of a brick sums.

@@ -3,101 +3,14 @@
 #include "../rules/rule_voxels.h"
 #include "../rules/thin_parts.h"
 #include "../vectors/instruction_sets.h"
-#include "tile_areas.h"
+#include "block_areas.h"
+#include "gathered_tiles.h"
 #include "tile_worker.h"
 
-#include <numeric>
 #include <optional>
 
 namespace voxrt::voxelize {
 namespace {
-
-/// Adds the octant of a whole cube. Eight equal octants in a row that share a parent become the parent.
-void push_cube(SparseVoxels& out, uint64_t code, uint8_t level, uint8_t material) {
-    auto& codes = out.octant_codes;
-    auto& levels = out.octant_levels;
-    auto& materials = out.octant_materials;
-    codes.push_back(code);
-    levels.push_back(level);
-    materials.push_back(material);
-    while (codes.size() >= 8 && (codes.back() & 7) == 7) {
-        const size_t first = codes.size() - 8;
-        for (size_t i = first; i < codes.size(); ++i)
-            if (levels[i] != levels.back() || materials[i] != materials.back() || codes[i] >> 3 != codes.back() >> 3)
-                return;
-        codes.resize(first + 1);
-        levels.resize(first + 1);
-        materials.resize(first + 1);
-        codes[first] >>= 3;
-        ++levels[first];
-    }
-}
-
-/// Appends the octants of all runs. Those of a cube are joined already.
-void gather_octants(const std::vector<TileResult>& tiles, const std::vector<CubeRun>& runs, SparseVoxels& out) {
-    size_t most = 0;
-    for (const CubeRun& run : runs)
-        most += run.octants_to - run.octants_from;
-    out.octant_codes.reserve(most);
-    out.octant_levels.reserve(most);
-    out.octant_materials.reserve(most);
-    const auto append = [](auto& to, const auto& from, const CubeRun& run) {
-        to.insert(to.end(), from.begin() + run.octants_from, from.begin() + run.octants_to);
-    };
-    for (const CubeRun& run : runs) {
-        const TileResult& tile = tiles[run.tile];
-        const uint32_t i = run.octants_from;
-        if (i + 1 == run.octants_to && tile.octant_levels[i] == kCubeLevel) {
-            push_cube(out, tile.octant_codes[i], kCubeLevel, tile.octant_materials[i]);
-        } else {
-            append(out.octant_codes, tile.octant_codes, run);
-            append(out.octant_levels, tile.octant_levels, run);
-            append(out.octant_materials, tile.octant_materials, run);
-        }
-    }
-}
-
-/// Lays the bricks and octants of all tiles out one after another.
-void gather(const std::vector<TileResult>& tiles, SparseVoxels& out, const Workers& workers) {
-    std::vector<CubeRun> runs;
-    for (const TileResult& tile : tiles)
-        runs.insert(runs.end(), tile.runs.begin(), tile.runs.end());
-    std::sort(runs.begin(), runs.end(), [](const CubeRun& a, const CubeRun& b) { return a.code < b.code; });
-    gather_octants(tiles, runs, out);
-
-    // Rows keep the order of their bricks.
-    std::vector<size_t> brick_starts, row_starts;
-    size_t bricks = 0, rows = 0;
-    for (const CubeRun& run : runs) {
-        brick_starts.push_back(bricks);
-        row_starts.push_back(rows);
-        bricks += run.bricks_to - run.bricks_from;
-        rows += run.rows;
-    }
-    out.brick_codes.resize(bricks);
-    out.brick_masks.resize(bricks);
-    out.brick_materials.resize(bricks);
-    out.brick_rows.resize(bricks);
-    out.cells.resize(rows);
-    constexpr size_t kRuns = 64; // per job
-    workers.run((runs.size() + kRuns - 1) / kRuns, [&](size_t job, int) {
-        for (size_t r = job * kRuns; r < std::min(runs.size(), (job + 1) * kRuns); ++r) {
-            const CubeRun& run = runs[r];
-            const TileResult& tile = tiles[run.tile];
-            size_t to = brick_starts[r], row = row_starts[r];
-            for (uint32_t i = run.bricks_from; i < run.bricks_to; ++i, ++to) {
-                out.brick_codes[to] = tile.brick_codes[i];
-                out.brick_masks[to] = tile.brick_masks[i];
-                out.brick_materials[to] = tile.brick_materials[i];
-                out.brick_rows[to] = -1;
-                if (tile.brick_rows[i] >= 0) {
-                    out.brick_rows[to] = int32_t(row);
-                    out.cells[row++] = tile.cells[tile.brick_rows[i]];
-                }
-            }
-        }
-    });
-}
 
 /// Bits 0, 2, 4 … of a Morton code in two dimensions.
 uint32_t every_other_bit(uint64_t code) {
@@ -259,43 +172,6 @@ struct BlockVoxelizer::State {
         return found;
     }
 
-    /// The areas of surface in voxels, by Morton code.
-    SurfaceAreas areas_of(std::span<const uint64_t> codes) {
-        const auto tile_of = [this](uint64_t code) {
-            return gather_bits(code >> 1) / kTileSide * uint32_t(bins.tiles_per_side) + gather_bits(code) / kTileSide;
-        };
-        std::vector<uint32_t> order(codes.size()); // by tile
-        std::iota(order.begin(), order.end(), 0u);
-        std::stable_sort(order.begin(), order.end(),
-                         [&](uint32_t a, uint32_t b) { return tile_of(codes[a]) < tile_of(codes[b]); });
-        std::vector<uint64_t> sorted(codes.size());
-        std::vector<size_t> starts; // of tiles
-        for (size_t i = 0; i < codes.size(); ++i) {
-            sorted[i] = codes[order[i]];
-            if (i == 0 || tile_of(sorted[i]) != tile_of(sorted[i - 1]))
-                starts.push_back(i);
-        }
-        starts.push_back(codes.size());
-        std::vector<SurfaceAreas> found(starts.size() - 1);
-        const TileAreas tiles(parts, bins, side, fill);
-        workers.run(found.size(), [&](size_t job, int thread) {
-            const std::span<const uint64_t> own(sorted.data() + starts[job], starts[job + 1] - starts[job]);
-            if (!scratch[size_t(thread)])
-                scratch[size_t(thread)] = std::make_unique<Scratch>(side, objects, parts.size(), has_rule);
-            tiles.find_areas(tile_of(own[0]), own, scratch[size_t(thread)]->vertices, found[job]);
-        });
-        std::vector<std::span<const MaterialArea>> rows(codes.size());
-        for (size_t job = 0; job < found.size(); ++job)
-            for (size_t i = starts[job]; i < starts[job + 1]; ++i)
-                rows[order[i]] = found[job].at(i - starts[job]);
-        SurfaceAreas all;
-        for (const auto& row : rows) {
-            all.areas.insert(all.areas.end(), row.begin(), row.end());
-            all.end_voxel();
-        }
-        return all;
-    }
-
     /// The voxels of a block by the rule.
     SparseVoxels ruled(const ColumnBlock& block, std::vector<ObjectTally>& tallies) {
         std::vector<TileResult> found = results(occupied(block), tallies);
@@ -330,10 +206,12 @@ struct BlockVoxelizer::State {
         const TileRange range = tiles_of(block);
         const auto brick = [](int tile) { return uint32_t(tile) * kTileBricks; };
         std::vector<int64_t> lost(objects, 0);
+        const TileAreas tiles(parts, bins, side, fill);
         apply_rule(
             voxels, beside.empty() ? voxels : around, std::move(findings),
             {brick(range.x0), brick(range.x1 + 1), brick(range.y0), brick(range.y1 + 1)}, thin,
-            [this](std::span<const uint64_t> codes) { return areas_of(codes); }, lost, workers);
+            [&](std::span<const uint64_t> codes) { return find_areas(tiles, bins.tiles_per_side, codes, workers); },
+            lost, workers);
         for (size_t i = 0; i < objects; ++i)
             tallies[i].voxels -= lost[i];
         seconds.fill += lap();
