@@ -159,7 +159,8 @@ def test_box_colliders_are_rounded_to_powers_of_two():
             "box",
             "object 'cube'.voxrt_colider: unknown property for voxrt; did you mean voxrt_collider?",
         ),
-        ("voxrt_rule", "all", "object 'cube'.voxrt_rule: invalid enum value 'all'; correct the property"),
+        ("voxrt_rule", "all", "object 'cube'.voxrt_rule: invalid enum value 'all'; use touch, centre, half"),
+        ("voxrt_fill", "together", "object 'cube'.voxrt_fill: invalid enum value 'together'; use solid, surface, auto"),
         ("voxrt_material", "gold", "object 'cube'.voxrt_material: no material 'gold' in the file; it has no materials"),
     ],
 )

@@ -146,6 +146,9 @@ class SceneReader:
         for one in depsgraph.view_layer.objects:
             if one.type != "MESH" or one.rigid_body is None or not one.hide_render or not len(one.data.polygons):
                 continue
+            authored = self._properties(one)
+            if authored is None:
+                continue
             collider = rigid_collider(one.rigid_body, read_triangles(one.data), self._log)
             if collider is not None:
                 material = self._materials.of(one.active_material)
@@ -153,7 +156,13 @@ class SceneReader:
                 transform = placed(one.matrix_world)
                 found.append(
                     SceneObject(
-                        one.name, transform=transform, colliders=(collider,), collider_material=number, hidden=True
+                        one.name,
+                        transform=transform,
+                        colliders=(collider,),
+                        collider_material=number,
+                        hidden=True,
+                        rule=authored.voxrt_rule,
+                        fill=authored.voxrt_fill,
                     )
                 )
         self._log.add("collider", "colliders that are not shown count with geometry collider alone", len(found))
@@ -189,7 +198,8 @@ class SceneReader:
         if collider is not None and (mesh.materials != material).any():
             self._log.add("collider-material", "colliders of objects with several materials took the first of them")
         colliders = () if collider is None else (collider,)
-        return SceneObject(name, mesh, one.transform, colliders, material, rule=one.properties.voxrt_rule)
+        rule, fill = one.properties.voxrt_rule, one.properties.voxrt_fill
+        return SceneObject(name, mesh, one.transform, colliders, material, rule=rule, fill=fill)
 
     def _error(self, place: str, problem: str, fix: str) -> AssetError:
         return AssetError(self._path, problem, place=place, fix=fix)
@@ -205,19 +215,14 @@ class SceneReader:
         name = one.name
         if instance.is_instance and instance.parent is not None and instance.parent.name != name:
             name = f"{instance.parent.name}/{name}"
-        place = f"object {one.name!r}"
-        properties = checked_properties(
-            {key: one[key] for key in one.keys() if key.startswith(PREFIX)},  # noqa: SIM118 - not a dict
-            ObjectProperties,
-            place,
-            self._error,
-        )
-        if properties.voxrt_ignore:
-            self._log.add("ignored", "objects with voxrt_ignore were left out")
+        properties = self._properties(one)
+        if properties is None:
             return None
         transform = placed(instance.matrix_world)
         if not np.isfinite(transform).all():
-            raise self._error(place, "the transform is not finite", "clear its scale and its constraints")
+            raise self._error(
+                f"object {one.name!r}", "the transform is not finite", "clear its scale and its constraints"
+            )
         key = one.data.as_pointer()
         if key not in self._arrays:
             self._arrays[key] = read_triangles(one.data)
@@ -230,6 +235,19 @@ class SceneReader:
                 self._colliders[shape] = rigid_collider(one.rigid_body, arrays, self._log)
             collider = self._colliders[shape]
         return _Placed(name, row, transform, properties, collider)
+
+    def _properties(self, one: Any) -> ObjectProperties | None:
+        """Return what an object says to voxrt; None where that is to leave it out."""
+        authored = checked_properties(
+            {key: one[key] for key in one.keys() if key.startswith(PREFIX)},  # noqa: SIM118 - not a dict
+            ObjectProperties,
+            f"object {one.name!r}",
+            self._error,
+        )
+        if not authored.voxrt_ignore:
+            return authored
+        self._log.add("ignored", "objects with voxrt_ignore were left out")
+        return None
 
     def _mesh(self, one: Any, key: int, arrays: MeshArrays, properties: ObjectProperties) -> int:
         """Return the row of an object's mesh with the materials of its slots."""
