@@ -130,13 +130,23 @@ class SceneReader:
             objects.append(self._object(called, one, mesh))
         objects += self._hidden(depsgraph)
         if not objects:
-            raise AssetError(self._path, "has no triangles to voxelize", fix="check that renders show a mesh")
+            raise self._nothing_shown(depsgraph.scene)
         materials = self._table.materials()
         sky = read_daylight(depsgraph).sky
         if sky is not None:
             materials = (Material(materials[0].name, sky), *materials[1:])
         viewpoint = cameras[0] if cameras else None
         return Scene(name, tuple(objects), materials, self._log.warnings(), viewpoint=viewpoint, cameras=cameras)
+
+    def _nothing_shown(self, scene: Any) -> AssetError:
+        """Return the error for a scene without triangles; it says what the scene has instead."""
+        kinds = Counter(one.type.replace("GREASEPENCIL", "grease pencil").lower() for one in scene.objects)
+        has = ", ".join(f"{count} {kind}" for kind, count in sorted(kinds.items())) or "no objects"
+        meshes = sum(one.type == "MESH" and one.hide_render for one in scene.objects)
+        fix = (
+            f"show a mesh in renders: hidden from them are {meshes}" if meshes else "check that renders of that scene show a mesh"
+        )
+        return AssetError(self._path, f"has no triangles to voxelize: the scene {scene.name!r} has {has}", fix=fix)
 
     def _hidden(self, depsgraph: Any) -> list[SceneObject]:
         """Return the rigid bodies that renders do not show, as colliders without a mesh; modifiers do not count."""
