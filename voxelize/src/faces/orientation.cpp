@@ -85,9 +85,9 @@ public:
             if (first_[f] != f && is_ours(f) && changes(own(f))) {
                 // The two faces of a sheet go on covering both layers beside a plane between voxels.
                 const bool is_sheet = own(f).is_balanced && !own(f).is_settled();
-                found->faces[f] = uint8_t(
-                    Orientation::kUncounted | Orientation::kSettled | (is_sheet ? 0 : Orientation::kRepeated) |
-                    (found->is_reversed(first_[f]) != (opposed_[f] && !is_sheet) ? Orientation::kReversed : 0));
+                found->faces[f] =
+                    uint8_t(Orientation::kUncounted | Orientation::kSettled | (is_sheet ? 0 : Orientation::kRepeated) |
+                            (found->is_reversed(first_[f]) != (opposed_[f] && !is_sheet) ? Orientation::kReversed : 0));
             }
         const bool any =
             std::any_of(found->faces.begin(), found->faces.end(), [](uint8_t state) { return state != 0; });
