@@ -39,7 +39,7 @@ _LOADERS = {
     ".obj": ("voxrt.voxelize.formats.obj", "load_obj", {"up", "unit", "allow_outside", "opaque_from"}),
     ".stl": ("voxrt.voxelize.formats.stl.load", "load_stl", {"up", "unit"}),
     ".off": ("voxrt.voxelize.formats.by_trimesh", "load_off", {"up", "unit"}),
-    ".3mf": ("voxrt.voxelize.formats.by_trimesh", "load_3mf", {"opaque_from"}),
+    ".3mf": ("voxrt.voxelize.formats.threemf.load", "load_3mf", {"opaque_from"}),
     ".dae": ("voxrt.voxelize.formats.by_trimesh", "load_dae", {"allow_outside", "opaque_from"}),
     ".step": ("voxrt.voxelize.formats.step.isolated", "load_step", {"opaque_from"}),
     ".stp": ("voxrt.voxelize.formats.step.isolated", "load_step", {"opaque_from"}),

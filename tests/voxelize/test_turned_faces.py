@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
-from oracles.meshes import box_mesh, icosphere, joined, one_object, scene_of
+from oracles.meshes import box_mesh, icosphere, joined, one_object, scene_of, without
 from oracles.voxels import dense
 
 from voxrt.voxelize import Grid, Mesh, SceneObject, voxelize
@@ -186,6 +186,38 @@ def test_faces_are_wound_alike_across_t_junctions(turned, seed):
     expected = np.zeros((16, 16, 16), bool)
     expected[4:10, 4:13, 4:7] = True
     np.testing.assert_array_equal(dense(result.voxels) != 0, expected)
+
+
+@pytest.mark.parametrize("share", [0, 0.1, 0.5])
+@pytest.mark.parametrize("gone", [3, 20, 600])
+def test_a_surface_with_holes_stored_once_for_each_side_counts_once(share, gone):
+    """As the same surface stored once does: a ball with small holes, one with larger ones, and what is left of it."""
+    rng = np.random.default_rng(gone)
+    ball = icosphere(3, (8, 8, 8), 6.6)
+    once = without(ball, rng.permutation(len(ball.triangles))[:gone])
+    twice = np.concatenate([once.triangles, np.roll(once.triangles[:, ::-1], 1, axis=1)])
+    twice = np.where(rng.random((len(twice), 1)) < share, twice[:, ::-1], twice)[rng.permutation(len(twice))]
+    mesh = Mesh(once.positions, twice.astype(np.int32), np.ones(len(twice), np.uint8))
+    for fill in ("solid", "auto", "surface"):
+        made, single = (voxelize(one_object(one), GRID, fill=fill) for one in (mesh, once))
+        np.testing.assert_array_equal(made.voxels.brick_masks, single.voxels.brick_masks)
+        if gone < 600:  # pieces that hang together by corners face either way
+            assert made.objects[0].mode == single.objects[0].mode
+    assert not share or kinds_of(voxelize(one_object(mesh), GRID))
+    if gone == 3:
+        whole = voxelize(one_object(ball), GRID)
+        np.testing.assert_array_equal(voxelize(one_object(mesh), GRID).voxels.brick_masks, whole.voxels.brick_masks)
+
+
+def test_two_sided_sheets_stay_as_they_are():
+    """A sheet between voxels covers both layers beside it, and none is turned."""
+    sheet = np.array([[1.0, 1, 8], [15, 1, 8], [15, 15, 8], [1, 15, 8]])
+    faces = np.array([[0, 1, 2], [0, 2, 3], [0, 2, 1], [0, 3, 2]], np.int32)
+    result = voxelize(one_object(Mesh(sheet, faces, np.ones(4, np.uint8))), GRID)
+    filled = dense(result.voxels) != 0
+    assert filled[1:15, 1:15, 7:9].all()
+    assert filled.sum() == 14 * 14 * 2
+    assert kinds_of(result) == {}
 
 
 def klein_bottle(n=24):

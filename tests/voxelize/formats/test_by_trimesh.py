@@ -57,8 +57,10 @@ def test_3mf_has_units_components_and_colours(unit, metres, tmp_path):
     np.testing.assert_allclose(high, np.array([55, 20, 10]) * metres)
     assert len(scene.objects) == 2
     assert scene.objects[0].mesh is scene.objects[1].mesh
-    corners = scene.objects[0].mesh.appearance.colours[:, 0, :3]
-    assert corners.tolist() == [[0, 1, 0]] * 2 + [[0, 0, 1]] * 4 + [[1, 0, 0]] * 6
+    mesh = scene.objects[0].mesh
+    shown = [scene.materials[number].colour for number in mesh.materials]
+    assert shown == [(0, 255, 0)] * 2 + [(0, 0, 255)] * 4 + [(255, 0, 0)] * 6
+    assert [one.name for one in scene.materials[1:3]] == ["red", "blue"]
 
 
 def test_a_3mf_of_another_program(tmp_path):

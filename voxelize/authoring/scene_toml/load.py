@@ -103,7 +103,7 @@ class _Builder:
         name = self._unique(prefix + (node.name or f"{shape} {int(where[-1]) + 1}"))
         material = node.material or material
         if node.group is not None:
-            for key in ("collider", "rule"):
+            for key in ("collider", "rule", "fill"):
                 if getattr(node, key) is not None:
                     raise self._checked.error((*where, key), f"a group cannot have a {key}", "put it on its objects")
             for index, one in enumerate(node.group):
@@ -123,6 +123,7 @@ class _Builder:
                     collider=node.collider,
                     pow2=node.pow2,
                     rule=node.rule,
+                    fill=node.fill,
                 )
                 return
             self._author.add_transformed(
@@ -133,6 +134,7 @@ class _Builder:
                 collider=node.collider,
                 pow2=node.pow2,
                 rule=node.rule,
+                fill=node.fill,
             )
         except ValueError as error:
             raise self._checked.error((*where, shape), str(error), "correct the object") from None
@@ -176,7 +178,7 @@ class _Builder:
         if shape == "group":
             raise self._checked.error((*where, "group"), "a group is not a solid", "use union")
         for index, one in enumerate(getattr(node, shape)):
-            for key in ("collider", "name", "rule"):
+            for key in ("collider", "name", "rule", "fill"):
                 if getattr(one, key) is not None:
                     problem = f"a part of a {shape} cannot have a {key}"
                     raise self._checked.error((*where, shape, index, key), problem, "put it on the whole")

@@ -8,7 +8,8 @@
 // outside on both sides, decide nothing. What remains closes exactly, whatever its faces cross.
 //
 // Connected faces whose edges are walked as often one way as the other keep the orientation of the file: its cavities
-// stay. The exception are faces stored twice, once for each side: they count once.
+// stay. The exception are faces stored twice, once for each side: they count once, where they enclose something or
+// where all faces of a piece are so.
 //
 // Where faces enclose nothing, those that meet in pairs are turned to face as most of them do. A piece that has one
 // side only, like a Klein bottle, stays as it is, and is counted.

@@ -38,13 +38,14 @@ void tally_objects(const std::vector<PartView>& parts, std::vector<std::unique_p
 }
 
 /// Sets the voxels, modes and notes of all objects.
-void report_objects(const std::vector<PartView>& parts, Fill fill, const TriangleBins& bins,
+void report_objects(const std::vector<PartView>& parts, const TriangleBins& bins,
                     const std::vector<ObjectTally>& tallies, SparseVoxels& out) {
     const size_t objects = tallies.size();
     out.object_voxels.resize(objects);
     out.object_modes.resize(objects);
     out.object_notes.assign(objects, ObjectNotes{});
     std::vector<ObjectFindings> found(objects);
+    std::vector<Fill> fill_of(objects, Fill::solid);
     for (size_t i = 0; i < objects; ++i) {
         out.object_voxels[i] = tallies[i].voxels;
         found[i].overlaps_itself = tallies[i].overlaps_itself != 0;
@@ -52,6 +53,7 @@ void report_objects(const std::vector<PartView>& parts, Fill fill, const Triangl
     for (size_t p = 0; p < parts.size(); ++p) {
         const MeshAnalysis& mesh = bins.meshes[p];
         ObjectFindings& object = found[parts[p].object];
+        fill_of[parts[p].object] = parts[p].fill;
         object.has_boundary |= parts[p].kind == PartKind::mesh && !mesh.closed;
         object.has_open_enclosure |= mesh.hole_caps && mesh.hole_caps->has_open_enclosure;
         if (mesh.orientation) {
@@ -64,20 +66,20 @@ void report_objects(const std::vector<PartView>& parts, Fill fill, const Triangl
         }
     }
     for (size_t i = 0; i < objects; ++i) {
-        out.object_modes[i] = uint8_t(object_mode(fill, found[i]));
+        out.object_modes[i] = uint8_t(object_mode(fill_of[i], found[i]));
         out.object_notes[i][kMostlyFilled] = tallies[i].inside_of_open > tallies[i].shell_of_open;
     }
 }
 
 } // namespace
 
-SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads, Thin thin,
+SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, int threads, Thin thin,
                       const std::string& instructions) {
     SparseVoxels all;
     all.depth = unsigned(depth);
     all.clear();
     SparseVoxels report = voxelize_in_blocks(
-        depth, parts, objects, fill, threads, 1 << depth, [&](SparseVoxels&& block) { all = std::move(block); }, thin,
+        depth, parts, objects, threads, 1 << depth, [&](SparseVoxels&& block) { all = std::move(block); }, thin,
         instructions);
     all.object_voxels = std::move(report.object_voxels);
     all.object_modes = std::move(report.object_modes);
@@ -86,9 +88,9 @@ SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t obje
     return all;
 }
 
-SparseVoxels voxelize_in_blocks(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads,
+SparseVoxels voxelize_in_blocks(int depth, const std::vector<PartView>& parts, size_t objects, int threads,
                                 int block_side, const TakeBlock& take, Thin thin, const std::string& instructions) {
-    BlockVoxelizer voxelizer(depth, parts, objects, fill, threads, thin);
+    BlockVoxelizer voxelizer(depth, parts, objects, threads, thin);
     voxelizer.use_instructions(instructions);
     const std::vector<ColumnBlock> blocks = voxelizer.blocks(block_side);
     std::vector<ObjectTally> tallies(objects);
@@ -102,8 +104,8 @@ SparseVoxels voxelize_in_blocks(int depth, const std::vector<PartView>& parts, s
 }
 
 struct BlockVoxelizer::State {
-    State(int depth, std::vector<PartView> scene_parts, size_t object_count, Fill how, Thin thin_parts, int threads)
-        : depth(unsigned(depth)), side(1 << depth), parts(std::move(scene_parts)), objects(object_count), fill(how),
+    State(int depth, std::vector<PartView> scene_parts, size_t object_count, Thin thin_parts, int threads)
+        : depth(unsigned(depth)), side(1 << depth), parts(std::move(scene_parts)), objects(object_count),
           thin(thin_parts), workers(threads), scratch(size_t(workers.threads())) {}
 
     TileRange tiles_of(const ColumnBlock& block) const {
@@ -127,7 +129,7 @@ struct BlockVoxelizer::State {
                                     bool volumes = false) {
         lap();
         std::vector<TileResult> found(tiles.size());
-        const TileWorker worker(parts, bins, side, fill, engine);
+        const TileWorker worker(parts, bins, side, engine);
         workers.run(tiles.size(), [&](size_t job, int thread) {
             if (!scratch[size_t(thread)])
                 scratch[size_t(thread)] = std::make_unique<Scratch>(side, objects, parts.size(), has_rule);
@@ -222,7 +224,6 @@ struct BlockVoxelizer::State {
     int side;
     std::vector<PartView> parts;
     size_t objects;
-    Fill fill;
     Thin thin;
     bool has_rule = false; // some part has another rule than `touch`
     CoverageEngine engine = coverage_engines().front();
@@ -233,13 +234,13 @@ struct BlockVoxelizer::State {
     StageSeconds seconds, before;
 };
 
-BlockVoxelizer::BlockVoxelizer(int depth, std::vector<PartView> parts, size_t objects, Fill fill, int threads,
-                               Thin thin, std::span<const uint8_t> wanted)
-    : state_(std::make_unique<State>(depth, std::move(parts), objects, fill, thin, threads)) {
+BlockVoxelizer::BlockVoxelizer(int depth, std::vector<PartView> parts, size_t objects, int threads, Thin thin,
+                               std::span<const uint8_t> wanted)
+    : state_(std::make_unique<State>(depth, std::move(parts), objects, thin, threads)) {
     State& s = *state_;
     for (const PartView& part : s.parts)
         s.has_rule |= part.rule != Rule::touch;
-    s.bins = bin_triangles(s.parts, wanted, s.side, fill, s.workers);
+    s.bins = bin_triangles(s.parts, wanted, s.side, s.workers);
     s.seconds.bin = s.bins.seconds;
     s.seconds.analysis = s.lap() - s.bins.seconds;
 }
@@ -309,15 +310,17 @@ SparseVoxels BlockVoxelizer::report(const std::vector<ObjectTally>& tallies) con
     SparseVoxels out;
     out.depth = state_->depth;
     out.clear();
-    report_objects(state_->parts, state_->fill, state_->bins, tallies, out);
+    report_objects(state_->parts, state_->bins, tallies, out);
     return out;
 }
 
 ObjectVolumes find_volumes(int depth, std::vector<PartView> parts, size_t objects, int threads,
                            const std::string& instructions) {
-    for (PartView& part : parts)
+    for (PartView& part : parts) {
         part.rule = Rule::half;
-    BlockVoxelizer voxelizer(depth, parts, objects, Fill::solid, threads);
+        part.fill = Fill::solid;
+    }
+    BlockVoxelizer voxelizer(depth, parts, objects, threads);
     voxelizer.use_instructions(instructions);
     return voxelizer.volumes();
 }
