@@ -208,7 +208,7 @@ struct BlockVoxelizer::State {
         const TileRange range = tiles_of(block);
         const auto brick = [](int tile) { return uint32_t(tile) * kTileBricks; };
         std::vector<int64_t> lost(objects, 0);
-        const TileAreas tiles(parts, bins, side, fill);
+        const TileAreas tiles(parts, bins, side);
         apply_rule(
             voxels, beside.empty() ? voxels : around, std::move(findings),
             {brick(range.x0), brick(range.x1 + 1), brick(range.y0), brick(range.y1 + 1)}, thin,
