@@ -1,7 +1,8 @@
 """The memory of a scene whose objects are edited one at a time.
 
 Only the voxels around an edited object are made again. They are those of a whole build but where a face lies on a plane
-between voxels to the last bit of its coordinates, so the whole scene is built again when its author rests.
+between voxels to the last bit of its coordinates. What leaves the grid is cut off. So the whole scene is built again
+when its author rests.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize import Material, Scene, SceneObject
 
 _MARGIN = 1  # voxels around an object's box: boxes are of rounded numbers
+_FARTHEST = 1 << 17  # voxels from the grid's corner: the voxelizer takes no more than twice as many
 
 
 class EditedMemory:
@@ -52,7 +54,7 @@ class EditedMemory:
         box = self._box(item)
         low = np.minimum(self._boxes[number, 0], box[0])
         high = np.maximum(self._boxes[number, 1], box[1])
-        if (low + _MARGIN < 0).any() or (high - _MARGIN > self._grid.size).any():
+        if max(-box.min(), box.max()) > _FARTHEST:
             return False
         low, high = np.maximum(low, 0), np.minimum(high, self._grid.size)
         boxes = self._boxes.copy()
@@ -64,7 +66,8 @@ class EditedMemory:
         if any(isinstance(one, BoxCollider) for row in near for one in objects[row].colliders):
             return False
         scene = replace(self._scene, objects=tuple(objects), materials=(self._scene.materials[0], *materials[1:]))
-        self._make(replace(scene, objects=tuple(objects[row] for row in near)), low, high)
+        if (low < high).all():
+            self._make(replace(scene, objects=tuple(objects[row] for row in near)), low, high)
         self._scene, self._boxes = scene, boxes
         return True
 

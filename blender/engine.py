@@ -73,8 +73,7 @@ class VoxrtEngine(bpy.types.RenderEngine):
         self._viewport.look(looking)
         try:
             exact = self._viewport.rest(depsgraph)
-            view = self._viewport.view(looking, coarse=not exact)
-            frame = None if view is None else view.frame()
+            frame = self._viewport.frame(looking, coarse=not exact)
         except ERRORS as error:
             self._problem, exact, frame = str(error), True, None
         if frame is None:

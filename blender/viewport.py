@@ -25,7 +25,11 @@ if TYPE_CHECKING:
 REST_SECONDS = 0.4
 """How long nothing must move before a picture is exact."""
 
-_COARSE = 2  # pixels of the viewport per rendered one while something moves
+_COARSE, _COARSEST = 2, 8  # pixels of the viewport per rendered one, on each axis, while something moves
+_MOVING_SECONDS = 0.06
+"""What a picture may take while something moves: slower ones have fewer pixels next time."""
+
+_FASTER = 6  # so many times faster, pictures get four times the pixels again
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +58,7 @@ class Viewport:
         self._exact = True  # whether the memory is that of a whole build
         self._moved = 0.0  # when something moved last
         self._looking: Looking | None = None
+        self._divisor = _COARSE
 
     def update(self, depsgraph: Any) -> None:
         """Take over what changed: one object at a time where that is all, else the whole scene.
@@ -84,7 +89,7 @@ class Viewport:
         """Return the view of a region; `coarse` for fewer pixels. None where it has no perspective, or no memory."""
         if self._result is None:
             return None
-        divisor = _COARSE if coarse else 1
+        divisor = self._divisor if coarse else 1
         width, height = (max(1, side // divisor) for side in looking.size)
         viewpoint = projected_viewpoint("viewport", np.array(looking.place), looking.projection, looking.size)
         if viewpoint is None:
@@ -92,6 +97,20 @@ class Viewport:
         grid = self._result.rom.grid
         assert grid is not None
         return View(self._result, authored_camera(viewpoint, grid, (width, height)), (width, height))
+
+    def frame(self, looking: Looking, *, coarse: bool) -> voxrt.Frame | None:
+        """Render the view of a region; a coarse one that takes long has fewer pixels next time."""
+        view = self.view(looking, coarse=coarse)
+        if view is None:
+            return None
+        began = time.monotonic()
+        frame = view.frame()
+        took = time.monotonic() - began
+        if coarse and took > _MOVING_SECONDS:
+            self._divisor = min(2 * self._divisor, _COARSEST)
+        elif coarse and took * _FASTER < _MOVING_SECONDS:
+            self._divisor = max(self._divisor // 2, _COARSE)
+        return frame
 
     def _build(self, depsgraph: Any) -> None:
         scene = depsgraph.scene.original

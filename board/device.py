@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.board.frame_drop import FrameDrop
+    from voxrt.board.loaded_scene import LoadedScene
     from voxrt.board.view import View
     from voxrt.octree import Patch
 
@@ -89,6 +90,9 @@ class Device(Protocol):
     @property
     def identity(self) -> Identity:
         """What it is and what it can hold."""
+
+    def loaded(self) -> LoadedScene | None:
+        """Read the scene that was in the memory when the device was opened; None where there is none, or no more."""
 
     def registers(self) -> Mapping[str, int]:
         """Read all registers, by name, in the order of their addresses."""

@@ -8,12 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.octree import Octree, Rom, census
+from voxrt.sim.engine_arguments import mirrors_of, palette_of
 from voxrt.voxelize import Material
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from voxrt.board.scene import Scene
+
+_IDS = tuple(str(number) for number in range(256))
 
 
 def rom_of(scene: Scene) -> Rom:
@@ -31,7 +34,15 @@ def rom_of(scene: Scene) -> Rom:
 
 def with_materials(scene: Scene, materials: Sequence[Material]) -> Scene:
     """Give a scene other materials, by id."""
-    colours, mirrors = np.zeros((256, 3), np.uint8), np.zeros(256, np.bool_)
-    for number, material in enumerate(materials):
-        colours[number], mirrors[number] = material.colour, material.mirror
-    return replace(scene, colours=colours, mirrors=mirrors, names=tuple(material.name for material in materials))
+    names = tuple(material.name for material in materials)
+    return replace(scene, colours=palette_of(materials), mirrors=mirrors_of(materials), names=names)
+
+
+def with_numbers(scene: Scene) -> Scene:
+    """Give the materials of a scene their ids as names and one colour, so that worlds keep the ids."""
+    return replace(scene, names=_IDS, colours=palette_of(()), mirrors=mirrors_of(()))
+
+
+def same_materials(scene: Scene, other: Scene) -> bool:
+    """Whether two scenes have the same colours and mirrors."""
+    return np.array_equal(scene.colours, other.colours) and np.array_equal(scene.mirrors, other.mirrors)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from voxrt.board.errors import DeviceError
+from voxrt.octree.words import move_pointers
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -31,6 +33,19 @@ def block_writes(patch: Patch) -> Iterator[tuple[int, NDArray[np.uint32]]]:
     for addresses, blocks in zip(np.split(patch.addresses, cuts), np.split(patch.blocks, cuts), strict=True):
         if len(addresses):
             yield int(addresses[0]), blocks.ravel()
+
+
+def moved_patch(patch: Patch, distance: int) -> Patch:
+    """Return a patch for a memory whose words stand `distance` words further."""
+    words = move_pointers(np.append(patch.blocks, np.uint32(patch.root_word)), distance)
+    addresses = patch.addresses + np.uint32(distance)
+    return replace(
+        patch,
+        root=patch.root + distance,
+        root_word=int(words[-1]),
+        addresses=addresses,
+        blocks=words[:-1].reshape(-1, 8),
+    )
 
 
 def write_patch(device: Device, patch: Patch, depth: int) -> None:

@@ -15,6 +15,7 @@ import numpy as np
 
 from voxrt.board.device import Counters, Frame, Identity
 from voxrt.board.errors import DeviceError, FrameDropped, TooSlow
+from voxrt.board.loaded_scene import read_back
 from voxrt.board.patch_writes import write_patch
 from voxrt.board.register_writes import (
     PROBLEMS,
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.board.frame_drop import FrameDrop
+    from voxrt.board.loaded_scene import LoadedScene
     from voxrt.board.register_writes import Writes
     from voxrt.board.view import View
     from voxrt.octree import Patch
@@ -177,12 +179,30 @@ class RegisterDevice:
         )
         # The registers and the memory may still hold the scene of an earlier program: nothing of it may be traced.
         self.hold()
+        root, depth = self._read("root", "depth")
+        earlier = decode_fields("root", root)["address"], decode_fields("depth", depth)["depth"], self.read_memory(0, 1)
         if memory.base is not None:
             self._write("memory_base", memory.base)
         if features["lod"]:
             self._write("lod", 0)
         self.write_memory(0, np.array([EMPTY], dtype=np.uint32))
         self.select_scene(0, 1)
+        self._earlier: tuple[int, int, NDArray[np.uint32]] | None = earlier
+
+    def loaded(self) -> LoadedScene | None:
+        """Read the scene of the program before; frames do not show it. None if there is none any more.
+
+        So a :class:`~.scene_memory.SceneMemory` can write what differs.
+        """
+        if self._earlier is None:
+            return None
+        root, depth, word_0 = self._earlier
+
+        def read(address: int, count: int) -> NDArray[np.uint32]:
+            words = self.read_memory(address, count)
+            return words if address else np.append(word_0, words[1:])
+
+        return read_back(read, self.identity.capacity, root, depth)
 
     def registers(self) -> Mapping[str, int]:
         """Read all registers, by name, in the order of their addresses."""
@@ -198,7 +218,7 @@ class RegisterDevice:
         if self._stopped.is_set():
             raise DeviceError("the device was stopped")
         self._memory[address : address + len(words)] = words
-        self._caches_stale = self._external
+        self._caches_stale, self._earlier = self._external, None
 
     def read_memory(self, address: int, count: int) -> NDArray[np.uint32]:
         """Read `count` words from word `address` on."""

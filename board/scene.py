@@ -6,18 +6,19 @@ import zlib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from voxrt.board.errors import Refused
 from voxrt.octree import RomError, check_roots, decode
-from voxrt.octree.words import is_leaf
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    import numpy as np
     from numpy.typing import NDArray
 
     from voxrt.board.view import Camera, Lighting, Triple
+
+MEMORY_SUFFIXES = (".blob", ".mem")
+"""Suffixes of the files of an octree memory that a device takes."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -74,6 +75,16 @@ class Scene:
         return zlib.crc32(self.words.astype("<u4").tobytes())
 
 
+def check_size(scene: Scene, holder: str, capacity: int, depth: int) -> None:
+    """Refuse a scene that has more words or levels than what shall hold it."""
+    for unit, count, verb, most in (
+        ("words", len(scene.words), "holds", capacity),
+        ("levels", scene.depth, "takes", depth),
+    ):
+        if count > most:
+            raise Refused(f"{scene.name} has {count} {unit} and {holder} {verb} {most}; build it with a smaller depth")
+
+
 def check_memory(words: NDArray[np.uint32], depth: int, roots: tuple[int, ...] = (0,)) -> None:
     """Refuse a memory that is no octree of `depth` levels, from any of its roots.
 
@@ -88,32 +99,6 @@ def check_memory(words: NDArray[np.uint32], depth: int, roots: tuple[int, ...] =
             check_roots(octree, roots)
     except RomError as error:
         raise Refused(str(error)) from error
-
-
-def octree_span(words: NDArray[np.uint32], root: int, depth: int) -> tuple[int, int]:
-    """Find the first block that an octree in a memory leads to, and the end of the last; both are 1 if there is none.
-
-    Pointers out of the memory end there.
-
-    Parameters
-    ----------
-    words
-        uint32, shape (N,): the memory.
-    root
-        The word where the octree's root is.
-    depth
-        Its levels.
-    """
-    addresses, first, end = np.array([root]), 0, 1
-    for _ in range(depth):
-        reached = words[addresses[addresses < len(words)]]
-        pointers = np.unique(reached[~is_leaf(reached)]).astype(np.int64)
-        if len(pointers) == 0:
-            break
-        first = min(first or int(pointers[0]), int(pointers[0]))
-        end = max(end, int(pointers[-1]) + 8)
-        addresses = (pointers[:, None] + np.arange(8)).ravel()
-    return first or 1, end
 
 
 def frame_period(times: Sequence[float | None]) -> float | None:

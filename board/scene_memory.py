@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import zlib
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from voxrt.board.edited_scene import rom_of
+from voxrt.board.edited_scene import rom_of, same_materials, with_numbers
 from voxrt.board.errors import DeviceError, Refused
-from voxrt.board.patch_writes import check_kept
-from voxrt.board.scene import check_memory
-from voxrt.octree import Box, Patch, World
+from voxrt.board.loaded_scene import LoadedScene, cut_out
+from voxrt.board.patch_writes import check_kept, moved_patch
+from voxrt.board.scene import check_memory, check_size
+from voxrt.octree import Box, World
 from voxrt.octree.words import EMPTY, move_pointers
 from voxrt.voxelize import DoesNotFitError
 
@@ -27,9 +28,8 @@ if TYPE_CHECKING:
 _BURST = 4096  # words per step, at least
 _STEPS = 256  # to write a scene, at most: a frame may come between two
 _PATCH_PART = 4  # a patch has a word per so many of the scene, at most
-_PATCH_LIMIT = 1 << 20  # words of both scenes: they are compared in one step, 0.2 s at most
-_IDS = tuple(str(number) for number in range(256))  # names, so that worlds keep the numbers of materials
-_BLACK, _DULL = np.zeros((256, 3), np.uint8), np.zeros(256, np.bool_)
+_ROOM = 1 << 21  # words before a scene at the end of the memory that its edits may use
+_PATCH_LIMIT = 1 << 19  # words of both scenes: they are compared in one step, in which no frame comes
 
 
 class Progress(Protocol):
@@ -37,22 +37,6 @@ class Progress(Protocol):
 
     def __call__(self, stage: str, done: int, total: int, /) -> None:
         """Receive that `done` of `total` parts of `stage` are complete."""
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class LoadedScene:
-    """A scene in the memory of a device.
-
-    Attributes
-    ----------
-    scene
-        Its words count from its own word 0.
-    base
-        The word of the memory where the scene's word 0 is.
-    """
-
-    scene: Scene
-    base: int
 
 
 class SceneMemory:
@@ -78,14 +62,16 @@ class SceneMemory:
         self._device = device
         self._scene = loaded.scene if loaded else None
         self._base = loaded.base if loaded else 0
+        self._shown = loaded is None or loaded.shown
+        self._just_read = loaded is not None
         self._world: World | None = None  # whose image the memory holds
         self._root = 0  # of the world: what frames show
-        self._in_doubt = False  # whether the memory holds the last patch
-        self._loads: World | None = None  # the world of scenes that were loaded by patches
+        self._in_doubt = False  # whether the memory holds the blocks of the world
+        self._placed: tuple[World | None, int] = None, 0  # the last world that was made, and where its word 0 is
 
     @property
     def loaded(self) -> Scene | None:
-        """The scene that frames show; an edited one with its free blocks."""
+        """The scene in the memory; one that was edited, or loaded as a patch, with its free blocks."""
         if self._world is None or self._scene is None:
             return self._scene
         return replace(self._scene, words=self._world.image, roots=(self._root,))
@@ -103,16 +89,7 @@ class SceneMemory:
 
     def _check_size(self, scene: Scene) -> None:
         identity = self._device.identity
-        if len(scene.words) > identity.capacity:
-            raise Refused(
-                f"{scene.name} has {len(scene.words)} words and {identity.name} holds {identity.capacity}; "
-                "build it with a smaller depth"
-            )
-        if scene.depth > identity.depth:
-            raise Refused(
-                f"{scene.name} has {scene.depth} levels and {identity.name} takes {identity.depth}; "
-                "build it with a smaller depth"
-            )
+        check_size(scene, identity.name, identity.capacity, identity.depth)
 
     def select_frame(self, number: int) -> None:
         """Show a frame of the loaded scene's animation from the next frame of the device on: one register write.
@@ -168,8 +145,29 @@ class SceneMemory:
             yield
         self._switch(scene, base, try_scene)
 
+    def world_of(self, scene: Scene, *, undo_steps: int = 100) -> World:
+        """Return a world of the loaded scene, for :meth:`begin_edits`.
+
+        Its blocks are where the memory has them, if it has equal ones once, and all others are free.
+
+        Parameters
+        ----------
+        scene
+            The loaded one, or one that differs from it in names and materials.
+        undo_steps
+            As :class:`voxrt.octree.World` has it.
+        """
+        root, offset = None, 0
+        if self._scene is not None:
+            words, root, offset = self._image()
+            scene = replace(scene, words=words)
+        capacity = self._device.identity.capacity
+        world = World(rom_of(scene), words=capacity - offset, undo_steps=undo_steps, root=root)
+        self._placed = world, offset
+        return world
+
     def begin_edits(self, world: World, scene: Scene) -> None:
-        """Give the memory all words of a world, from word 0 on; from then on :meth:`show_edits` writes what changes.
+        """Give the memory all words of a world; from then on :meth:`show_edits` writes what changes.
 
         What the memory holds is compared with the world: it is written, while the device is held, only where it
         differs. So a host that connects again goes on with its world.
@@ -177,7 +175,8 @@ class SceneMemory:
         Parameters
         ----------
         world
-            Nobody else commits it or releases its roots. Its newest live root is shown.
+            That of :meth:`world_of`, or another one, whose word 0 is then word 0 of the memory. Nobody else commits it
+            or releases its roots. Its newest live root is shown.
         scene
             Its name, materials and depth; its words are not used.
 
@@ -191,11 +190,17 @@ class SceneMemory:
         root = world.live_roots[-1]
         edited = replace(scene, words=world.image, roots=(root,))
         self._check_size(edited)
-        if self._holds(world, edited.words):
-            self._select(edited, 0)
+        offset = self._base if world is self._world else 0
+        if world is self._placed[0]:
+            offset = self._placed[1]
+        if self._holds(world, edited.words, offset):
+            self._select(edited, offset)
         else:
             self._overwrite(edited, _ignore, None)
-        self._scene, self._base, self._world, self._root, self._in_doubt = scene, 0, world, root, False
+            offset = 0
+        self._keep(LoadedScene(scene, offset))
+        self._placed = world, offset
+        self._world, self._root = world, root
 
     def show_edits(self, scene: Scene) -> int:
         """Show the world that was begun, as it is now, from the next frame on; return the blocks that were written.
@@ -221,70 +226,80 @@ class SceneMemory:
             self.begin_edits(world, scene)
         else:
             self._in_doubt = True
-            if patch.end > self._device.identity.capacity:
+            if self._base + patch.end > self._device.identity.capacity:
                 raise Refused(f"the edit leads beyond the {self._device.identity.capacity} words of the device")
-            if not _same_materials(scene, before):
+            if not same_materials(scene, before):
                 self._device.write_materials(scene.colours, scene.mirrors)
-            self._device.apply_patch(patch, scene.depth)
+            self._device.apply_patch(moved_patch(patch, self._base), scene.depth)
             self._scene, self._root, self._in_doubt = scene, patch.root, False
         for root in older:
             if root != patch.root:
                 world.release(root)
         return len(patch.addresses)
 
-    def _holds(self, world: World, image: NDArray[np.uint32]) -> bool:
-        """Whether the memory has the live words of a world from word 0 on: as this object knows, or as it reads."""
-        loaded = self._scene if self._world is None and self._base == 0 else None
-        if loaded is not None and np.array_equal(loaded.words, image):
-            return True
-        live = np.append(world.written[:, None] + np.arange(8, dtype=np.uint32), np.uint32(world.live_roots[-1]))
-        found = self._device.read_memory(0, len(image))
-        return zlib.crc32(found[live].tobytes()) == zlib.crc32(image[live].tobytes())
+    def _image(self) -> tuple[NDArray[np.uint32], int, int]:
+        """Return words of the memory, the address of the root among them, and where the first of them is.
+
+        They are all that the scene uses, and some before it.
+        """
+        assert self._scene is not None
+        if self._world is not None:
+            words = self._world.image.copy()
+            words[0] = words[self._root]
+            return words, self._root, self._base
+        offset = max(0, self._base - _ROOM) // 8 * 8
+        return *LoadedScene(self._scene, self._base - offset).image(), offset
+
+    def _holds(self, world: World, image: NDArray[np.uint32], offset: int) -> bool:
+        """Whether the memory has the live words of a world: as this object knows, or as it reads."""
+        root = world.live_roots[-1]
+        live = np.append(world.written[:, None] + np.arange(8, dtype=np.uint32), np.uint32(root))
+        if self._scene is not None and self._shown and self._world is None:
+            words, present, start = self._image()
+            known = (start, present) == (offset, root) and live.max() < len(words)
+            if known and np.array_equal(words[live], image[live]):
+                return True
+        found = self._device.read_memory(offset, len(image))
+        return zlib.crc32(found[live].tobytes()) == zlib.crc32(move_pointers(image, offset)[live].tobytes())
 
     def _load_patch(self, scene: Scene, try_scene: Callable[[], None] | None) -> bool:
         """Show a scene that has most blocks of the present one. False where another does; then nothing was written."""
-        world = self._world_of_loads(scene)
-        if world is None:
+        before, world = self._scene, self._world_to_patch(scene)
+        if before is None or world is None:
             return False
-        self._loads = None
         try:
             world.fill(Box((0, 0, 0), (world.size,) * 3), 0)
-            world.paste(rom_of(replace(scene, names=_IDS, colours=_BLACK, mirrors=_DULL)), (0, 0, 0))
+            world.paste(rom_of(with_numbers(scene)), (0, 0, 0))
         except DoesNotFitError:
             return False
-        older, patch = world.live_roots, world.commit()
-        same = not len(patch.addresses) and _same_materials(scene, self._scene)
+        patch, offset = world.commit(), self._placed[1]
+        same = not len(patch.addresses) and same_materials(scene, before) and not self._just_read
         if same or _PATCH_PART * patch.words > len(scene.words):
             return False  # who loads a scene again wants it written again
         try:
             self._device.write_materials(scene.colours, scene.mirrors)
-            self._device.apply_patch(_moved(patch, self._base), scene.depth)
-            self._device.select_scene(self._base + patch.root, scene.depth)  # a serial board takes its cameras with it
+            self._device.apply_patch(moved_patch(patch, offset), scene.depth)
+            # A serial board takes its cameras with this, and keeps the materials in the list that it shows again.
+            self._device.write_materials(scene.colours, scene.mirrors)
+            self._device.select_scene(offset + patch.root, scene.depth)
             if try_scene is not None:
                 try_scene()
         except BaseException as error:
+            self._in_doubt = self._world is not None  # the patch was written where that has steps of undo
             self._restore(error, overwritten=False)
             raise
-        self._scene, self._world, self._root, self._loads = scene, world, patch.root, world
-        for root in older:
-            if root != patch.root:
-                world.release(root)
+        self._keep(cut_out(move_pointers(world.image, offset), offset, offset + patch.root, scene))
         return True
 
-    def _world_of_loads(self, scene: Scene) -> World | None:
+    def _world_to_patch(self, scene: Scene) -> World | None:
         """Return a world that has the words of the present scene, where they may be most of a scene."""
         present = self._scene
         if present is None or self._in_doubt or present.depth != scene.depth or scene.roots != (0,):
             return None
-        if len(present.words) + len(scene.words) > _PATCH_LIMIT:
+        if len(present.roots) > 1 or len(present.words) + len(scene.words) > _PATCH_LIMIT:
             return None
-        if self._world is not None:
-            return self._world if self._world is self._loads else None
-        if present.roots != (0,):
-            return None
-        memory = rom_of(replace(present, names=_IDS, colours=_BLACK, mirrors=_DULL))
-        world = World(memory, words=self._device.identity.capacity - self._base, undo_steps=0)
-        return world if np.array_equal(world.image, present.words) else None
+        world = self.world_of(with_numbers(present), undo_steps=0)
+        return world if np.array_equal(world.image, self._image()[0]) else None
 
     def _free_base(self, count: int) -> int | None:
         """Find where `count` words fit beside the loaded scene: before it, or at the end of the memory.
@@ -292,13 +307,16 @@ class SceneMemory:
         Scenes stand at either end of the memory, so the free part is in one piece: two scenes fit whenever their sizes
         allow it.
         """
-        loaded = self.loaded
-        if loaded is None:
+        if self._scene is None:
             return None
-        if count <= self._base:
+        first, end = self._base, self._base + len(self._scene.words)
+        if self._world is not None:
+            used = np.append(self._world.written, np.uint32(self._root))
+            first, end = first + int(used.min()), first + int(used.max()) + 8
+        if count <= first:
             return 0
         last = (self._device.identity.capacity - count) // 8 * 8
-        return last if last >= self._base + len(loaded.words) else None
+        return last if last >= end else None
 
     def _transfer(self, scene: Scene, base: int, progress: Progress) -> Iterator[None]:
         words = move_pointers(scene.words, base)
@@ -322,7 +340,7 @@ class SceneMemory:
         except BaseException as error:
             self._restore(error, overwritten=False)
             raise
-        self._scene, self._base, self._world = scene, base, None
+        self._keep(LoadedScene(scene, base))
 
     def _overwrite(self, scene: Scene, progress: Progress, try_scene: Callable[[], None] | None) -> None:
         try:
@@ -335,7 +353,12 @@ class SceneMemory:
         except BaseException as error:
             self._restore(error, overwritten=True)
             raise
-        self._scene, self._base, self._world = scene, 0, None
+        self._keep(LoadedScene(scene, 0))
+
+    def _keep(self, loaded: LoadedScene) -> None:
+        """Take over what the memory holds now."""
+        self._scene, self._base, self._shown = loaded.scene, loaded.base, loaded.shown
+        self._just_read, self._world, self._in_doubt = False, None, False
 
     def _select(self, scene: Scene, base: int) -> None:
         self._device.write_materials(scene.colours, scene.mirrors)
@@ -347,7 +370,8 @@ class SceneMemory:
     def _restore(self, error: BaseException, *, overwritten: bool) -> None:
         try:
             loaded = self.loaded
-            if loaded is None:
+            if loaded is None or not self._shown:
+                self._scene = None
                 self._device.write_memory(0, np.array([EMPTY], dtype=np.uint32))
                 self._device.select_scene(0, 1)
                 return
@@ -357,20 +381,6 @@ class SceneMemory:
             self._select(loaded, self._base)
         except DeviceError as second:
             raise DeviceError(f"{error}; and the present scene could not be restored: {second}") from error
-
-
-def _same_materials(scene: Scene, other: Scene | None) -> bool:
-    return (
-        other is not None
-        and np.array_equal(scene.colours, other.colours)
-        and np.array_equal(scene.mirrors, other.mirrors)
-    )
-
-
-def _moved(patch: Patch, base: int) -> Patch:
-    """Return a patch for a memory whose word 0 stands at word `base`."""
-    words = move_pointers(np.append(patch.blocks, np.uint32(patch.root_word)), base)
-    return Patch(patch.root + base, int(words[-1]), patch.addresses + np.uint32(base), words[:-1].reshape(-1, 8))
 
 
 def _ignore(_stage: str, _done: int, _total: int) -> None:

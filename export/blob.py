@@ -74,6 +74,11 @@ class Blob:
     provenance: Provenance = field(default_factory=Provenance)
     animation: Animation | None = None
 
+    @property
+    def roots(self) -> tuple[int, ...]:
+        """The words that are the roots of the frames; (0,) for a memory of one scene."""
+        return (0,) if self.animation is None else self.animation.roots
+
     def frame(self, number: int) -> Rom:
         """Return the memory whose root is that of a frame.
 
@@ -93,7 +98,7 @@ class Blob:
         >>> Blob(voxrt.build("examples/house.obj", depth=4).rom).frame(0)
         <Rom 'house': depth 4, 721 words, 5 materials>
         """
-        roots = (0,) if self.animation is None else self.animation.roots
+        roots = self.roots
         if not 0 <= number < len(roots):
             there = f"has frames 0 to {len(roots) - 1}" if self.animation else "is no animation: it has frame 0"
             raise RomError(f"{self.rom.name}: there is no frame {number}; the memory {there}")

@@ -9,7 +9,7 @@ import mmap
 import os
 from dataclasses import dataclass
 from importlib import import_module
-from stat import S_ISREG
+from stat import S_ISDIR, S_ISREG
 from typing import TYPE_CHECKING
 
 from voxrt.octree import RomError, _native
@@ -70,8 +70,11 @@ def mem_pieces(words: NDArray[np.uint32]) -> Iterator[bytes]:
 
 
 def read_bytes(path: Path) -> bytes:
-    """Read a whole file; RomError where that fails."""
+    """Read a whole file; RomError where that fails. Pipes and devices may never end, and are refused."""
     try:
+        status = path.stat()
+        if not (S_ISREG(status.st_mode) or S_ISDIR(status.st_mode)):
+            raise RomError(f"{path}: is a pipe or a device; save it to a file, and name that")
         return path.read_bytes()
     except OSError as error:
         raise RomError(f"{path}: cannot be read: {error.strerror}; name an octree memory") from None
@@ -83,10 +86,10 @@ def mapped_bytes(path: Path) -> bytes | mmap.mmap:
     A mapped file may be replaced, as voxrt replaces files, but nobody may write into it or cut it while it is in use.
     """
     try:
-        with path.open("rb") as file:
-            status = os.fstat(file.fileno())
-            if S_ISREG(status.st_mode) and status.st_size >= _MAPPED:
-                return mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
+        if path.is_file():
+            with path.open("rb") as file:
+                if os.fstat(file.fileno()).st_size >= _MAPPED:
+                    return mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
     except OSError:
         pass  # reading says why
     return read_bytes(path)

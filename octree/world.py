@@ -45,40 +45,53 @@ class World:
     undo_steps
         The edits of all authors that can be undone, 0 … 1,000,000. They are forgotten early where an edit needs their
         words.
+    root
+        Another word that is the root, as word 0 is: it is the live root then, and blocks that it does not reach are
+        free. None: word 0, and all blocks are in use. Where the memory stores equal blocks more than once, word 0 is
+        the live root of a memory that does not.
 
     Raises
     ------
     TypeError, ValueError
-        A value of another type, or out of range.
+        A value of another type, or out of range, or `root` is no such word.
     DoesNotFitError
         The memory has more than `words`.
 
     Examples
     --------
-    >>> from voxrt.octree import Rom, Sphere, World, census, from_dense
+    >>> import numpy as np
+    >>> from voxrt.octree import Box, Rom, Sphere, World, from_dense
     >>> from voxrt.voxelize import EMPTY, Material
-    >>> tree = from_dense(np.ones((32, 32, 32), np.uint8))
-    >>> world = World(Rom("rock", tree, (EMPTY, Material("stone", (120, 120, 120)))))
+    >>> stone, gold = Material("stone", (120, 120, 120)), Material("gold", (250, 200, 60))
+    >>> world = World(Rom("rock", from_dense(np.ones((32, 32, 32), np.uint8)), (EMPTY, stone)))
     >>> world.fill(Sphere((16, 16, 16), 10), 0)
-    >>> census(world.rom().octree).solid_voxels
-    28544
-    >>> world.undo()
-    True
-    >>> census(world.rom().octree).solid_voxels
-    32768
+    >>> world.set([[16, 16, 16]], world.add_material(gold))
+    >>> world.paint(Box((5, 16, 16), (17, 17, 17)), 2)
+    >>> world.paste(world.copy((5, 16, 16), (7, 17, 17)), (20, 16, 16))
+    >>> world.material_at([[16, 16, 16], [5, 16, 16], [6, 16, 16], [20, 16, 16]])
+    array([2, 2, 0, 2], dtype=uint8)
+    >>> world.undo(), world.undo(), world.redo(), world.steps
+    (True, True, True, (3, 1))
+    >>> patch = world.commit()
+    >>> len(patch.blocks) <= world.figures().blocks, world.live_roots == (0, patch.root)
+    (True, True)
+    >>> world.release(0)
     """
 
-    def __init__(self, rom: Rom, *, words: int | None = None, undo_steps: int = 100) -> None:
+    def __init__(self, rom: Rom, *, words: int | None = None, undo_steps: int = 100, root: int | None = None) -> None:
         self._rom = instance("rom", rom, Rom)
         self._limit = _MOST_WORDS if words is None else whole("words", words, 1, _MOST_WORDS)
         steps = whole("undo_steps", undo_steps, 0, 1_000_000)
+        present = rom.octree.words
+        if root is not None and present[whole("root", root, 0, len(present) - 1)] != present[0]:
+            raise ValueError(f"word {root} is not that of the root, as word 0 is")
         self._materials = rom.materials
         if len(rom.octree.words) > self._limit:
             raise DoesNotFitError(
                 f"{rom.name}: its {len(rom.octree.words):,} words do not fit the {self._limit:,} of the world's memory"
             )
         self._author = 0
-        self._native = _native.World(rom.octree.words, rom.octree.depth, self._limit, steps)
+        self._native = _native.World(rom.octree.words, rom.octree.depth, self._limit, steps, root)
 
     def __repr__(self) -> str:
         return f"<World {self._rom.name!r}: depth {self.depth}, {8 * self.figures().blocks + 1:,} words>"
@@ -112,15 +125,6 @@ class World:
             It is no material.
         DoesNotFitError
             There are 255 already.
-
-        Examples
-        --------
-        >>> from voxrt.octree import Rom, World, from_points
-        >>> from voxrt.voxelize import EMPTY, Material
-        >>> oak, gold = Material("oak", (160, 110, 60)), Material("gold", (250, 200, 60))
-        >>> world = World(Rom("dot", from_points([[1, 2, 3]], [1], depth=2), (EMPTY, oak)))
-        >>> world.add_material(gold), world.add_material(oak)
-        (2, 1)
         """
         self._materials = add_missing(self._materials, [instance("material", material, Material)])
         return self._materials.index(material, 1)
@@ -141,16 +145,6 @@ class World:
             A shape, a coordinate or a material is none of these.
         DoesNotFitError
             The memory has no room for the result. Nothing has changed.
-
-        Examples
-        --------
-        >>> from voxrt.octree import Rom, World, from_points
-        >>> from voxrt.voxelize import EMPTY, Material
-        >>> oak = Material("oak", (160, 110, 60))
-        >>> world = World(Rom("dot", from_points([[1, 2, 3]], [1], depth=2), (EMPTY, oak)))
-        >>> world.set([[0, 0, 0], [1, 2, 3]], [1, 0])
-        >>> world.material_at([[0, 0, 0], [1, 2, 3]])
-        array([1, 0], dtype=uint8)
         """
         places = whole_array("points", points, ("N", 3), np.int64, low=0, high=self.size - 1)
         ids = np.asarray(materials)
@@ -180,30 +174,11 @@ class World:
             The shape or the material is none of these.
         DoesNotFitError
             The memory has no room for the result. Nothing has changed.
-
-        Examples
-        --------
-        >>> from voxrt.octree import Box, Rom, World, from_points
-        >>> from voxrt.voxelize import EMPTY, Material
-        >>> oak = Material("oak", (160, 110, 60))
-        >>> world = World(Rom("dot", from_points([[1, 2, 3]], [1], depth=2), (EMPTY, oak)))
-        >>> world.fill(Box((0, 0, 0), (4, 1, 4)), 1)
         """
         self._change(shape, material, solid_only=False)
 
     def paint(self, shape: Shape, material: int) -> None:
-        """Give the solid voxels of a shape a material; as :meth:`fill` else.
-
-        Examples
-        --------
-        >>> from voxrt.octree import Rom, Sphere, World, from_points
-        >>> from voxrt.voxelize import EMPTY, Material
-        >>> oak, gold = Material("oak", (160, 110, 60)), Material("gold", (250, 200, 60))
-        >>> world = World(Rom("dot", from_points([[1, 2, 3]], [1], depth=2), (EMPTY, oak, gold)))
-        >>> world.paint(Sphere((2, 2, 2), 2), 2)
-        >>> world.material_at([[1, 2, 3], [1, 2, 2]])
-        array([2, 0], dtype=uint8)
-        """
+        """Give the solid voxels of a shape a material; as :meth:`fill` else."""
         self._change(shape, whole("material", material, 1, len(self._materials) - 1), solid_only=True)
 
     def copy(self, low: ArrayLike, high: ArrayLike) -> Piece:
@@ -219,16 +194,6 @@ class World:
         ------
         TypeError, ValueError
             A corner is not three integers, or the box is empty or too large.
-
-        Examples
-        --------
-        >>> from voxrt.octree import Rom, World, from_points
-        >>> from voxrt.voxelize import EMPTY, Material
-        >>> oak = Material("oak", (160, 110, 60))
-        >>> world = World(Rom("dot", from_points([[1, 2, 3]], [1], depth=2), (EMPTY, oak)))
-        >>> world.paste(world.copy((1, 2, 3), (2, 3, 4)), (0, 0, 0))
-        >>> world.material_at([0, 0, 0])
-        array(1, dtype=uint8)
         """
         start, end = as_box(low, high)
         x, y, z = (above - below for below, above in zip(start, end, strict=True))
@@ -257,16 +222,6 @@ class World:
             A value of another type, or out of range.
         DoesNotFitError
             The memory has no room for the result, or there are more than 255 materials. Nothing has changed.
-
-        Examples
-        --------
-        >>> from voxrt.octree import Rom, World, from_points
-        >>> from voxrt.voxelize import EMPTY, Material
-        >>> oak, gold = Material("oak", (160, 110, 60)), Material("gold", (250, 200, 60))
-        >>> world = World(Rom("dot", from_points([[1, 2, 3]], [1], depth=2), (EMPTY, oak)))
-        >>> world.paste(Rom("coin", from_points([[1, 0, 0]], [1], depth=1), (EMPTY, gold)), (0, 0, 0), turned=1)
-        >>> world.material_at([0, 0, 0]), world.materials[2].name
-        (array(2, dtype=uint8), 'gold')
         """
         if isinstance(other, Rom):
             other = Piece(other.octree, (other.octree.size,) * 3, other.materials)
@@ -317,16 +272,6 @@ class World:
         ------
         DoesNotFitError
             Others have edited since, and the memory has no room for the result. Nothing has changed.
-
-        Examples
-        --------
-        >>> from voxrt.octree import Rom, World, from_points
-        >>> from voxrt.voxelize import EMPTY, Material
-        >>> oak = Material("oak", (160, 110, 60))
-        >>> world = World(Rom("dot", from_points([[1, 2, 3]], [1], depth=2), (EMPTY, oak)))
-        >>> world.set([[0, 0, 0]], 1)
-        >>> world.undo(), world.undo(), world.redo(), world.redo()
-        (True, False, True, False)
         """
         return self._turned(self._native.undo())
 
@@ -380,18 +325,6 @@ class World:
         ------
         ValueError
             The memory has mean materials. They depend on neighbours: build it without level of detail.
-
-        Examples
-        --------
-        >>> from voxrt.octree import Rom, World, from_points
-        >>> from voxrt.voxelize import EMPTY, Material
-        >>> oak = Material("oak", (160, 110, 60))
-        >>> world = World(Rom("dot", from_points([[1, 2, 3]], [1], depth=2), (EMPTY, oak)))
-        >>> world.set([[0, 0, 0]], 1)
-        >>> patch = world.commit()
-        >>> world.live_roots, patch.addresses.tolist()
-        ((0, 33), [17, 25])
-        >>> world.release(0)
         """
         if self._rom.octree.means is not None:
             raise ValueError(

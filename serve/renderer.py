@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from voxrt.board.edited_scene import rom_of, with_materials
+from voxrt.board.edited_scene import with_materials
 from voxrt.board.errors import DeviceError, FrameDropped, Refused, TooSlow
 from voxrt.board.frame_drop import FrameDrop
 from voxrt.board.scene import Scene
 from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.view import View, frame_world, refit
 from voxrt.board.view_check import check_view
-from voxrt.octree import Octree, World, solid_bounds
+from voxrt.octree import Octree, solid_bounds
 from voxrt.octree.words import EMPTY
 from voxrt.serve.packets import FramePacket
 
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from voxrt.board.device import Device, Frame, Identity
     from voxrt.board.scene_memory import Progress
     from voxrt.board.view import Triple
+    from voxrt.octree import World
     from voxrt.serve.clients import Clients
     from voxrt.serve.requests import ChangeView
 
@@ -208,7 +209,7 @@ class Renderer:
     def _changed_world(self, change: Callable[[World], None], client: int) -> World:
         world = self.world
         if world is None:
-            world = World(rom_of(self.still_scene()), words=self.device.identity.capacity)
+            world = self._memory.world_of(self.still_scene())
         world.author = client
         change(world)
         return world
@@ -337,15 +338,7 @@ class Renderer:
             side, farthest = 16 << scene.depth, self.device.identity.position_limit - 1
             place = min(side, farthest), min(2 * side, farthest), min(side, farthest)
             return replace(view, lighting=replace(view.lighting, position=place))
-        built_in = self.device.identity.features
-        return replace(
-            view,
-            lighting=replace(
-                lighting,
-                on=lighting.on and "light" in built_in,
-                bounces=lighting.bounces if "mirrors" in built_in else 0,
-            ),
-        )
+        return replace(view, lighting=lighting.within(self.device.identity.features))
 
 
 def _first_size(identity: Identity) -> tuple[int, int]:

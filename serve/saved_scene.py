@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 import zlib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,6 +12,7 @@ from voxrt.export import Blob, convert
 from voxrt.export.vox import write_vox
 from voxrt.octree import RomError, census
 from voxrt.serve.packets import CHUNK_LIMIT, Chunk
+from voxrt.serve.temporary_folder import storing, temporary_folder
 from voxrt.voxelize import DoesNotFitError
 
 if TYPE_CHECKING:
@@ -41,20 +41,18 @@ class SavedScene:
 
     def __init__(self, number: int, scene: Scene, suffix: str) -> None:
         self.number = number
-        self._folder = tempfile.TemporaryDirectory(prefix="voxrt-saved-", ignore_cleanup_errors=True)
+        self._folder = temporary_folder()
         try:
-            self._paths = _write(scene, Path(self._folder.name, f"{_file_stem(scene.name)}{suffix}"))
-            self._sizes = [path.stat().st_size for path in self._paths]
-            self.files: list[dict[str, Any]] = [
-                {"name": path.name, "size": size, "crc32": _crc32(path)}
-                for path, size in zip(self._paths, self._sizes, strict=True)
-            ]
+            with storing():
+                self._paths = _write(scene, Path(self._folder.name, f"{_file_stem(scene.name)}{suffix}"))
+                self._sizes = [path.stat().st_size for path in self._paths]
+                self.files: list[dict[str, Any]] = [
+                    {"name": path.name, "size": size, "crc32": _crc32(path)}
+                    for path, size in zip(self._paths, self._sizes, strict=True)
+                ]
         except (DoesNotFitError, RomError) as error:
             self.close()
             raise Refused(str(error).replace(f"{self._folder.name}/", "")) from error
-        except OSError as error:
-            self.close()
-            raise Refused(f"the server cannot store the files: {error.strerror or error}; make room there") from error
         except BaseException:
             self.close()
             raise

@@ -10,6 +10,7 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 from voxrt.board.errors import Refused
+from voxrt.board.scene import MEMORY_SUFFIXES
 from voxrt.board.view import frame_world
 from voxrt.serve.clients import Clients
 from voxrt.serve.control_transfer import ControlTransfer
@@ -33,7 +34,6 @@ if TYPE_CHECKING:
     from voxrt.serve.server_options import Limits
 
 _WATCH_SECONDS = 0.5
-_MEMORY_SUFFIXES = (".blob", ".mem")
 
 
 class Session:
@@ -159,7 +159,7 @@ class Session:
         if size > UPLOAD_LIMIT:
             raise Refused(f"an upload of {size} bytes is more than the limit of {UPLOAD_LIMIT}; make the files smaller")
         for file in announced.files:
-            if PurePath(file.name).suffix.lower() in _MEMORY_SUFFIXES and file.size > self._memory_bytes:
+            if PurePath(file.name).suffix.lower() in MEMORY_SUFFIXES and file.size > self._memory_bytes:
                 identity = self.renderer.device.identity
                 raise Refused(
                     f"{file.name} has {file.size} bytes, and {identity.name} holds {identity.capacity} words, which "

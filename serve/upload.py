@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import tempfile
 import zlib
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from voxrt.board.errors import Refused
+from voxrt.serve.temporary_folder import storing, temporary_folder
 
 if TYPE_CHECKING:
     from typing import BinaryIO
@@ -51,11 +51,7 @@ class Upload:
         self.announced = announced
         self.size = sum(file.size for file in announced.files)
         self.received = 0
-        self._folder: tempfile.TemporaryDirectory[str] | None = None
-        try:
-            self._folder = tempfile.TemporaryDirectory(prefix="voxrt-upload-", ignore_cleanup_errors=True)
-        except OSError as error:
-            raise _not_stored(error) from error
+        self._folder = temporary_folder()
         self._waiting = list(announced.files)
         self._file: BinaryIO | None = None
         self._left = self._crc32 = 0
@@ -68,7 +64,6 @@ class Upload:
     @property
     def paths(self) -> list[Path]:
         """The files, in the order of their announcement."""
-        assert self._folder is not None
         return [Path(self._folder.name, file.name) for file in self.announced.files]
 
     def add(self, chunk: Chunk) -> None:
@@ -87,18 +82,15 @@ class Upload:
                 f"a chunk of {len(chunk.data)} bytes at byte {chunk.offset} does not continue the {self.received} of "
                 f"{self.size} bytes that have arrived; upload again"
             )
-        try:
+        with storing():
             self._write(memoryview(chunk.data))
-        except OSError as error:
-            raise _not_stored(error) from error
 
     def close(self) -> None:
         """Remove the files."""
         if self._file is not None:
             self._file.close()
-        if self._folder is not None:
-            self._folder.cleanup()
-        self._file = self._folder = None
+            self._file = None
+        self._folder.cleanup()
 
     def _write(self, data: memoryview) -> None:
         while len(data):
@@ -118,9 +110,3 @@ class Upload:
                 announced = self._waiting.pop(0)
                 if announced.crc32 != self._crc32:
                     raise Refused(f"{announced.name} was damaged in transit (CRC-32); upload again")
-
-
-def _not_stored(error: OSError) -> Refused:
-    return Refused(
-        f"the server cannot store the files in {tempfile.gettempdir()}: {error.strerror or error}; make room there"
-    )

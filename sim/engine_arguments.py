@@ -7,40 +7,46 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from voxrt.octree import Rom
     from voxrt.octree.camera import Camera, Lighting
+    from voxrt.voxelize import Material
 
 
-def palette_of(rom: Rom) -> NDArray[np.uint8]:
+def palette_of(materials: Sequence[Material]) -> NDArray[np.uint8]:
     """Return the colours that the engines take: uint8, shape (256, 3), sRGB, a row per material id.
 
     Examples
     --------
-    >>> from voxrt.octree import Rom, from_points
     >>> from voxrt.voxelize import EMPTY, Material
-    >>> rom = Rom("dot", from_points([[1, 1, 1]], [1], depth=2), (EMPTY, Material("red", (255, 0, 0))))
-    >>> palette_of(rom)[1].tolist()
+    >>> palette_of((EMPTY, Material("red", (255, 0, 0))))[1].tolist()
     [255, 0, 0]
     """
     palette = np.zeros((256, 3), dtype=np.uint8)
-    for number, material in enumerate(rom.materials):
+    for number, material in enumerate(materials):
         palette[number] = material.colour
     return palette
 
 
+def mirrors_of(materials: Sequence[Material]) -> NDArray[np.bool_]:
+    """Return which materials are mirrors: bool, shape (256,), by id."""
+    mirrors = np.zeros(256, dtype=np.bool_)
+    mirrors[: len(materials)] = [material.mirror for material in materials]
+    return mirrors
+
+
 def shading_of(rom: Rom, lighting: Lighting) -> dict[str, Any]:
     """Return the arguments of both engines that say what brightness depends on, and which materials are mirrors."""
-    mirrors = np.zeros(256, dtype=np.uint8)
-    mirrors[: len(rom.materials)] = [material.mirror for material in rom.materials]
     return {
         "flat": lighting.flat,
         "brightness": None if lighting.faces is None else np.array(lighting.faces, dtype=np.uint8),
         "light": np.array(lighting.position, dtype=np.int32) if lighting.on else None,
         "ambient": lighting.ambient if lighting.on else 0,
         "bounces": lighting.bounces,
-        "mirrors": mirrors,
+        "mirrors": mirrors_of(rom.materials).astype(np.uint8),
     }
 
 

@@ -95,7 +95,7 @@ def render_hardware(
         size[0],
         size[1],
         rom.octree.depth,
-        palette_of(rom),
+        palette_of(rom.materials),
         **shading_of(rom, lighting),
         latency=memory.latency,
         interval=memory.interval,

@@ -237,7 +237,7 @@ def _view_voxels(rom: Rom, camera: Camera, directions: NDArray[np.float64]) -> V
     depth = np.where(hits.material > 0, parameter * np.linalg.norm(flat, axis=1), np.inf)
     normal = np.zeros_like(flat)
     np.put_along_axis(normal, axis, np.where(crossed, -np.sign(lateral), 0)[:, None], 1)
-    colour = memory.render(palette_of(rom), registers_of(camera), width, height).colour
+    colour = memory.render(palette_of(rom.materials), registers_of(camera), width, height).colour
     return View(colour, depth.reshape(height, width), normal.reshape(height, width, 3))
 
 

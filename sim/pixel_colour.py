@@ -109,7 +109,7 @@ def explain_colour(rom: Rom, path: RayPath, lighting: Lighting = PLAIN_LIGHTING)
     rom = instance("rom", rom, Rom)
     check_lighting(lighting)
     rgb, mirrors, met, light, part, whole, is_mean = _model.Memory(rom.octree.words, rom.octree.depth).explain(
-        palette_of(rom),
+        palette_of(rom.materials),
         np.array(path.origin, np.int32),
         np.array(path.direction, np.int32),
         **shading_of(rom, lighting),

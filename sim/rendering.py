@@ -254,7 +254,7 @@ def _render_model(
 ) -> Frame:
     started = time.perf_counter()
     pixels = _model.Memory(rom.octree.words, rom.octree.depth).render(
-        palette_of(rom),
+        palette_of(rom.materials),
         registers_of(camera),
         size[0],
         size[1],

@@ -128,7 +128,9 @@ def record_wave(rom: Rom, path: RayPath) -> Wave:
     tracer = _rtl.Tracer(_CONFIG, recorded=True)
     check_fits(tracer, _CONFIG, rom, camera=camera, size=(rays, 1), lighting=Lighting())
     tracer.load(rom.octree.words)
-    tracer.render(registers_of(camera), rays, 1, rom.octree.depth, palette_of(rom), **shading_of(rom, Lighting()))
+    tracer.render(
+        registers_of(camera), rays, 1, rom.octree.depth, palette_of(rom.materials), **shading_of(rom, Lighting())
+    )
     signals, end = _read(tracer.take_wave())
     return _with_ray(Wave(signals, (), end, rays), len(path.readings))
 

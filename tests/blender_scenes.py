@@ -309,6 +309,7 @@ def properties():
     one["voxrt_collider"] = "sphere"
     other = cube((3, 0, 0), paint("green", (0, 0.8, 0)))
     other["voxrt_rule"] = "centre"
+    other["voxrt_fill"] = "surface"
     other["voxrt_material"] = "red"
     left_out = cube((9, 0, 0))
     left_out["voxrt_ignore"] = True

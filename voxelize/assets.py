@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from voxrt.voxelize import arguments
 from voxrt.voxelize.errors import AssetError, DoesNotFitError, SceneWarning
+from voxrt.voxelize.formats.external_files import refuse_endless
 from voxrt.voxelize.point_cloud import MOST_POINTS
 
 if TYPE_CHECKING:
@@ -38,8 +39,8 @@ _LOADERS = {
     ".obj": ("voxrt.voxelize.formats.obj", "load_obj", {"up", "unit", "allow_outside", "opaque_from"}),
     ".stl": ("voxrt.voxelize.formats.stl.load", "load_stl", {"up", "unit"}),
     ".off": ("voxrt.voxelize.formats.by_trimesh", "load_off", {"up", "unit"}),
-    ".3mf": ("voxrt.voxelize.formats.by_trimesh", "load_3mf", set()),
-    ".dae": ("voxrt.voxelize.formats.by_trimesh", "load_dae", {"allow_outside"}),
+    ".3mf": ("voxrt.voxelize.formats.threemf.load", "load_3mf", {"opaque_from"}),
+    ".dae": ("voxrt.voxelize.formats.by_trimesh", "load_dae", {"allow_outside", "opaque_from"}),
     ".step": ("voxrt.voxelize.formats.step.isolated", "load_step", {"opaque_from"}),
     ".stp": ("voxrt.voxelize.formats.step.isolated", "load_step", {"opaque_from"}),
     ".vox": ("voxrt.voxelize.formats.vox.scene", "load_vox_scene", {"unit", "time"}),
@@ -96,8 +97,8 @@ def load(
     variants
         The name of one material variant (glTF), or any number of ``/prim/path:set=variant`` (USD).
     opaque_from
-        Surfaces of lower opacity are left out, 0 … 1, for formats with opacity (glTF, OBJ, PLY, USD, Blender); None
-        for 0.5. The alpha cutoff or the opacity threshold that an author gave a material decides in its place.
+        Surfaces of lower opacity are left out, 0 … 1, for formats with opacity; None for 0.5. The alpha cutoff or the
+        opacity threshold that an author gave a material decides in its place.
     points
         How many points of a point cloud make a voxel solid, for formats with points (PLY, XYZ, LAS); None for 1.
     allow_outside
@@ -180,6 +181,7 @@ def _suffix(path: Path) -> str:
     if address := _ADDRESS.match(str(path)):  # a path has lost one of the slashes
         shown = f"{address[1]}://{address[2]}"
         raise AssetError(shown, "is an address, and files are read from folders alone", fix="download it first")
+    refuse_endless(path)
     try:
         is_file, is_folder = path.is_file(), path.is_dir()
     except OSError:  # the name is longer than any file's

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from copy import copy
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.box_rounding import Pow2
     from voxrt.voxelize.grid import Grid
     from voxrt.voxelize.object_proxies import Geometry
-    from voxrt.voxelize.rules import Rule, Thin
+    from voxrt.voxelize.rules import ObjectFill, Rule, Thin
     from voxrt.voxelize.scene import Scene
     from voxrt.voxelize.voxels import Voxels
 
@@ -83,7 +83,7 @@ class BlockVoxelizer:
         scene: Scene,
         grid: Grid,
         *,
-        fill: Literal["solid", "surface", "auto"] = "solid",
+        fill: ObjectFill = "solid",
         rule: Rule = "touch",
         thin: Thin = "keep",
         geometry: Geometry = "auto",
@@ -180,7 +180,7 @@ def voxelize_in_blocks(
     take: Callable[[Voxels], None],
     *,
     block_side: int,
-    fill: Literal["solid", "surface", "auto"] = "solid",
+    fill: ObjectFill = "solid",
     rule: Rule = "touch",
     thin: Thin = "keep",
     geometry: Geometry = "auto",

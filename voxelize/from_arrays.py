@@ -95,11 +95,11 @@ def triangles_of(name: str, faces: ArrayLike, vertices: int) -> NDArray[np.int32
     return found
 
 
-def appearance_of_corners(name: str, corners: NDArray[np.uint8]) -> SurfaceAppearance:
+def appearance_of_corners(name: str, corners: NDArray[np.uint8], opaque_from: float = OPAQUE_FROM) -> SurfaceAppearance:
     """Return the appearance of triangles whose corners have colours: uint8, shape (F, 3, 4), sRGB and opacity."""
     linear = LINEAR_OF_SRGB8.astype(np.float32)[corners]
     linear[:, :, 3] = corners[:, :, 3] / np.float32(255)
-    cutoff = OPAQUE_FROM if (corners[:, :, 3] < 255).any() else 0.0
+    cutoff = opaque_from if (corners[:, :, 3] < 255).any() else 0.0
     rows = np.zeros(len(corners), np.int32)
     return SurfaceAppearance((Appearance(name, cutoff=cutoff),), rows, np.zeros((len(corners), 3, 2)), linear)
 

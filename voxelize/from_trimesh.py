@@ -45,13 +45,19 @@ def is_trimesh(value: object) -> TypeGuard[trimesh.Trimesh | trimesh.Scene]:
 
 
 def trimesh_scene(
-    value: trimesh.Trimesh | trimesh.Scene, *, name: str = "mesh", up: UpAxis | None = None, unit: float | None = None
+    value: trimesh.Trimesh | trimesh.Scene,
+    *,
+    name: str = "mesh",
+    up: UpAxis | None = None,
+    unit: float | None = None,
+    opaque_from: float = OPAQUE_FROM,
 ) -> Scene:
     """Make a scene of a mesh or a scene of trimesh: an object per instance, in the order of the graph's nodes.
 
     Instances of one geometry share its mesh. Vertex colours, face colours, textures with their coordinates, and the
     base colours of materials are honoured. A ``baseColorFactor`` is linear, as in glTF; other colours are sRGB. What a
-    scene holds besides triangles is left out, with a warning. `name`, `up` and `unit` are as for :func:`mesh_scene`.
+    scene holds besides triangles is left out, with a warning, and so are faces of an opacity below `opaque_from`.
+    `name`, `up` and `unit` are as for :func:`mesh_scene`.
 
     ValueError for a vertex that is not finite, or a face that names no vertex; DoesNotFitError for more than 255
     materials.
@@ -68,8 +74,8 @@ def trimesh_scene(
     table, log = MaterialTable(), WarningLog()
     placed = _placed(value, name, log)
     geometries = {key: geometry for key, _, geometry, _ in placed}
-    loaded = [_loaded_mesh(key or name, geometry, table) for key, geometry in geometries.items()]
-    meshes = dict(zip(geometries, assign_materials(loaded, table, log), strict=True))
+    loaded = [_loaded_mesh(key or name, geometry, table, opaque_from) for key, geometry in geometries.items()]
+    meshes = dict(zip(geometries, assign_materials(loaded, table, log, opaque_from), strict=True))
     objects = tuple(SceneObject(node, meshes[key], frame @ transform) for key, node, _, transform in placed)
     return Scene(name, objects, table.materials(), log.warnings())
 
@@ -93,29 +99,36 @@ def _placed(
     return placed
 
 
-def _loaded_mesh(name: str, mesh: trimesh.Trimesh, table: MaterialTable) -> LoadedMesh:
+def _loaded_mesh(name: str, mesh: trimesh.Trimesh, table: MaterialTable, opaque_from: float) -> LoadedMesh:
     positions = real_array("vertices", mesh.vertices, ("V", 3))
     triangles = triangles_of("faces", mesh.faces, len(positions))
     materials = np.zeros(len(triangles), np.uint8)
-    appearance = _surface_appearance(name, mesh.visual, triangles)
+    appearance = _surface_appearance(name, mesh.visual, triangles, opaque_from)
     if appearance is None:
         materials[:] = table.id_of(None, "default", DEFAULT_COLOUR, authored=False)
     return LoadedMesh(positions, triangles, materials, appearance)
 
 
-def _surface_appearance(name: str, visual: Any, triangles: NDArray[np.int32]) -> SurfaceAppearance | None:  # noqa: ANN401 - has no types
+def _surface_appearance(
+    name: str,
+    visual: Any,  # noqa: ANN401 - has no types
+    triangles: NDArray[np.int32],
+    opaque_from: float,
+) -> SurfaceAppearance | None:
     if visual is None or not len(triangles) or not getattr(visual, "defined", False):
         return None
     if visual.kind == "vertex":
-        return appearance_of_corners("vertex colours", np.asarray(visual.vertex_colors, np.uint8)[triangles])
+        return appearance_of_corners(
+            "vertex colours", np.asarray(visual.vertex_colors, np.uint8)[triangles], opaque_from
+        )
     if visual.kind == "face":
         by_face = np.asarray(visual.face_colors, np.uint8)
         kind = name if (by_face == by_face[0]).all() else "face colours"
-        return appearance_of_corners(kind, np.repeat(by_face[:, None], 3, axis=1))
+        return appearance_of_corners(kind, np.repeat(by_face[:, None], 3, axis=1), opaque_from)
     if visual.kind != "texture":
         return None
     several = getattr(visual.material, "materials", None)
-    appearances = tuple(_appearance(name, material) for material in (several or [visual.material]))
+    appearances = tuple(_appearance(name, material, opaque_from) for material in (several or [visual.material]))
     rows = np.zeros(len(triangles), np.int32)
     if several and getattr(visual, "face_materials", None) is not None:
         rows = np.asarray(visual.face_materials).astype(np.int32)
@@ -126,7 +139,7 @@ def _surface_appearance(name: str, visual: Any, triangles: NDArray[np.int32]) ->
     return SurfaceAppearance(appearances, rows, uv, np.ones((len(triangles), 3, 4), np.float32))
 
 
-def _appearance(name: str, material: Any) -> Appearance:  # noqa: ANN401 - has no types
+def _appearance(name: str, material: Any, opaque_from: float) -> Appearance:  # noqa: ANN401 - has no types
     name = str(getattr(material, "name", None) or name)
     physical = hasattr(material, "baseColorFactor")
     image = material.baseColorTexture if physical else getattr(material, "image", None)
@@ -142,7 +155,7 @@ def _appearance(name: str, material: Any) -> Appearance:  # noqa: ANN401 - has n
     cutoff = 0.0
     if physical and material.alphaMode in {"MASK", "BLEND"}:
         own = material.alphaCutoff if material.alphaMode == "MASK" else None
-        cutoff = OPAQUE_FROM if own is None else float(own)
+        cutoff = opaque_from if own is None else float(own)
     elif not physical and factor[3] < 1:
-        cutoff = OPAQUE_FROM
+        cutoff = opaque_from
     return Appearance(name, factor, texture, cutoff)

@@ -98,7 +98,7 @@ def fit_grid(
         voxels = round(voxels * UNITS_PER_VOXEL) / UNITS_PER_VOXEL
     if voxels > 2**DEPTH_LIMIT:
         raise DoesNotFitError(
-            f"{scene.name}: needs {voxels:.0f} voxels per side, and {2**DEPTH_LIMIT} are the most; "
+            f"{scene.name}: needs {voxels:.9g} voxels per side, and {2**DEPTH_LIMIT} are the most; "
             f"use a voxel size of {longest / 2**DEPTH_LIMIT:.6g} m or more"
         )
     fitted_depth = max(1, int(np.ceil(np.log2(voxels)))) if voxels > 1 else 1

@@ -26,7 +26,8 @@ def join_open_objects(scene: Scene) -> Scene:
     """Return a scene in which one object has the triangles of all objects whose surface does not close alone.
 
     CAD programs write the faces of one solid as several objects, by material or by part. The joined object stands where
-    the first of them stood. Objects that close, that have colliders or that are hidden stay as they are.
+    the first of them stood. Objects that close, that have colliders or a fill of their own, or that are hidden, stay as
+    they are.
 
     Examples
     --------
@@ -38,7 +39,9 @@ def join_open_objects(scene: Scene) -> Scene:
     >>> [one.name for one in join_open_objects(yard.build()).objects]
     ['block']
     """
-    chosen = [i for i, one in enumerate(scene.objects) if not (one.hidden or one.colliders) and is_open(one.mesh)]
+    chosen = [
+        i for i, one in enumerate(scene.objects) if not (one.hidden or one.colliders or one.fill) and is_open(one.mesh)
+    ]
     if len(chosen) < 2:
         return scene
     parts = [scene.objects[i] for i in chosen]

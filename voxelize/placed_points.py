@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.voxelize.object_proxies import Geometry
+    from voxrt.voxelize.rules import ObjectFill
     from voxrt.voxelize.scene import SceneObject
 
 _AXIS_BITS = 16  # of a voxel's coordinate: a key has x, y and z
@@ -41,7 +42,7 @@ _LAST = _COLUMN - 1
 _MARGIN = 0.25
 
 
-def place_points(scene: Scene, grid: Grid, *, colours: int, fill: str, geometry: Geometry = "auto") -> Scene:
+def place_points(scene: Scene, grid: Grid, *, colours: int, fill: ObjectFill, geometry: Geometry = "auto") -> Scene:
     """Return a scene whose point clouds have meshes on a grid; the scene itself where it has none.
 
     Their points are then the centres of the voxels that hold points, in the scene frame.
@@ -55,7 +56,8 @@ def place_points(scene: Scene, grid: Grid, *, colours: int, fill: str, geometry:
     colours
         The most materials to add for all clouds, 1 … 254.
     fill
-        ``"surface"`` keeps voxels that hold points; any other also fills what they enclose.
+        ``"surface"`` keeps voxels that hold points; any other also fills what they enclose. Objects with a fill of
+        their own keep that.
     geometry
         As for :func:`voxrt.voxelize.voxelize`: points that colliders represent are left out.
 
@@ -94,7 +96,7 @@ def place_points(scene: Scene, grid: Grid, *, colours: int, fill: str, geometry:
     for row, (keys, _) in held.items():
         ids = (rows[used : used + len(keys)] + len(scene.materials)).astype(np.uint8)
         used += len(keys)
-        mesh = _mesh(keys, ids, grid, filled=fill != "surface")
+        mesh = _mesh(keys, ids, grid, filled=(objects[row].fill or fill) != "surface")
         centres = PointCloud((coordinates(keys) + 0.5) * grid.voxel_size + grid.origin)
         objects[row] = replace(objects[row], mesh=mesh, transform=np.eye(4), points=centres)
     taken = {material.name for material in scene.materials}

@@ -15,7 +15,7 @@ from voxrt.voxelize.collider_shapes import BoxCollider, Collider, HullCollider, 
 from voxrt.voxelize.materials import MATERIAL_LIMIT, Material
 from voxrt.voxelize.mesh import NO_TRIANGLES, Mesh
 from voxrt.voxelize.point_cloud import PointCloud
-from voxrt.voxelize.rules import RULES, Rule
+from voxrt.voxelize.rules import OBJECT_FILLS, RULES, ObjectFill, Rule
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -49,6 +49,8 @@ class SceneObject:
         that is voxelized in their place.
     rule
         Which voxels it fills, as :func:`voxelize` takes it; None for what the build says.
+    fill
+        Whether what it encloses is filled, as :func:`voxelize` takes it; None for what the build says.
 
     Raises
     ------
@@ -71,6 +73,7 @@ class SceneObject:
     represented: bool = False
     points: PointCloud | None = None
     rule: Rule | None = None
+    fill: ObjectFill | None = None
 
     def __post_init__(self) -> None:
         arguments.text("SceneObject.name", self.name)
@@ -87,6 +90,8 @@ class SceneObject:
             arguments.instance("SceneObject.points", self.points, PointCloud)
         if self.rule is not None:
             arguments.choice("SceneObject.rule", self.rule, RULES)
+        if self.fill is not None:
+            arguments.choice("SceneObject.fill", self.fill, OBJECT_FILLS)
         object.__setattr__(self, "transform", transform.astype(np.float64, copy=False))
         object.__setattr__(self, "colliders", colliders)
         object.__setattr__(self, "collider_material", material)

@@ -14,7 +14,7 @@ from voxrt.voxelize.errors import AssetError, DoesNotFitError
 from voxrt.voxelize.grid import Grid
 from voxrt.voxelize.mesh import MaterialMap
 from voxrt.voxelize.object_proxies import GEOMETRIES, proxies
-from voxrt.voxelize.rules import RULES, THIN_CHOICES
+from voxrt.voxelize.rules import OBJECT_FILLS, RULES, THIN_CHOICES
 from voxrt.voxelize.scene import Scene
 from voxrt.voxelize.voxels import ObjectMode, ObjectReport
 from voxrt.voxelize.warning_log import WarningLog
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.collider_shapes import Collider
     from voxrt.voxelize.errors import SceneWarning
     from voxrt.voxelize.object_proxies import Geometry
-    from voxrt.voxelize.rules import Rule, Thin
+    from voxrt.voxelize.rules import ObjectFill, Rule, Thin
     from voxrt.voxelize.scene import SceneObject
 
 _MESH, _BOX, _BALL, _ELLIPSOID = range(4)
@@ -39,18 +39,19 @@ class SceneParts:
     """The parts of a scene as arrays for the native voxelizer, in authored order."""
 
     def __init__(
-        self, scene: Scene, grid: Grid, *, fill: str, rule: Rule, thin: Thin, geometry: Geometry, pow2: Pow2
+        self, scene: Scene, grid: Grid, *, fill: ObjectFill, rule: Rule, thin: Thin, geometry: Geometry, pow2: Pow2
     ) -> None:
         arguments.instance("scene", scene, Scene)
         arguments.instance("grid", grid, Grid)
-        arguments.choice("fill", fill, ("solid", "surface", "auto"))
+        arguments.choice("fill", fill, OBJECT_FILLS)
         arguments.choice("rule", rule, RULES)
         arguments.choice("thin", thin, THIN_CHOICES)
         arguments.choice("geometry", geometry, GEOMETRIES)
         arguments.choice("pow2", pow2, POW2_CHOICES)
         self.scene = scene
         self.grid = grid
-        self.choices = {"fill": fill, "thin": thin}
+        self.choices = {"thin": thin}
+        self._fill = fill
         self._rule = rule
         self._geometry = geometry
         self._scale = UNITS_PER_VOXEL / grid.voxel_size
@@ -140,6 +141,7 @@ class SceneParts:
             "materials": rows[:, 2].astype(np.uint8),
             "objects_of": np.ascontiguousarray(rows[:, 3]),
             "rules": np.array([RULES.index(one.rule or self._rule) for one in self.scene.objects], np.uint8),
+            "fills": np.array([OBJECT_FILLS.index(one.fill or self._fill) for one in self.scene.objects], np.uint8),
         }
 
 

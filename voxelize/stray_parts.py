@@ -10,6 +10,8 @@ import numpy as np
 from voxrt.voxelize.object_proxies import proxies
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
     from voxrt.voxelize.mesh import Mesh
@@ -96,6 +98,18 @@ class _Group:
         turned = own @ self.transforms[which, :3, :3].transpose(0, 2, 1)
         return np.asarray(turned + self.transforms[which, None, :3, 3])
 
+    def chunks(self) -> Iterator[tuple[NDArray[np.int64], NDArray[np.float64]]]:
+        """Yield numbers and corners of all triangles, without those that have no area, which stretch no grid.
+
+        Where no triangle has an area, all of them count.
+        """
+        pieces = [np.arange(begin, min(begin + _CHUNK, self.count)) for begin in range(0, self.count, _CHUNK)]
+        any_area = any(bool(_areas(self.corners(numbers)).any()) for numbers in pieces)
+        for numbers in pieces:
+            corners = self.corners(numbers)
+            kept = _areas(corners) > 0 if any_area else np.ones(len(numbers), np.bool_)
+            yield numbers[kept], corners[kept]
+
 
 def _groups(shown: list[SceneObject]) -> list[_Group]:
     owners: dict[int, list[int]] = {}
@@ -149,9 +163,7 @@ def _strays(
     inside, outside = (np.zeros(len(shown), np.bool_) for _ in range(2))
     farthest, place = 0.0, start
     for one in groups:
-        for begin in range(0, one.count, _CHUNK):
-            numbers = np.arange(begin, min(begin + _CHUNK, one.count))
-            corners = one.corners(numbers)
+        for numbers, corners in one.chunks():
             middles = corners.mean(axis=1)
             within = ((middles >= start) & (middles <= end)).all(axis=1)
             owners = one.owners[numbers // len(one.mesh.triangles)]

@@ -12,7 +12,7 @@ bounds the inside; voxels that only such a surface covers are empty.
 from __future__ import annotations
 
 from dataclasses import fields
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from voxrt.voxelize import _native, arguments
 from voxrt.voxelize.scene_parts import SceneParts, unreachable
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.box_rounding import Pow2
     from voxrt.voxelize.grid import Grid
     from voxrt.voxelize.object_proxies import Geometry
-    from voxrt.voxelize.rules import Rule, Thin
+    from voxrt.voxelize.rules import ObjectFill, Rule, Thin
     from voxrt.voxelize.scene import Scene
 
 MOST_THREADS = 1024
@@ -32,7 +32,7 @@ def voxelize(
     scene: Scene,
     grid: Grid,
     *,
-    fill: Literal["solid", "surface", "auto"] = "solid",
+    fill: ObjectFill = "solid",
     rule: Rule = "touch",
     thin: Thin = "keep",
     geometry: Geometry = "auto",
@@ -50,6 +50,7 @@ def voxelize(
         not fill open pieces: those with an opening larger than 15 % of their area that other pieces do not close.
         ``"surface"`` keeps the shells alone. ``"auto"`` is ``"solid"``, but leaves open also pieces whose openings
         exceed 5 % of their area together, as those of clothes do.
+        Objects with a fill of their own keep that.
     rule
         ``"touch"``: a voxel is solid when an object's closed solid overlaps its interior at all. ``"centre"``: when its
         centre lies in an object's closed solid. ``"half"``: when the volumes of the objects in it add up to half of it;

@@ -31,7 +31,8 @@ from voxrt.board.designs.boot_table import (
     encode_list,
 )
 from voxrt.board.device import Counters, Frame, Identity
-from voxrt.board.errors import DeviceError, Refused
+from voxrt.board.errors import DeviceError
+from voxrt.board.loaded_scene import read_back
 from voxrt.board.patch_writes import block_writes, write_blocks
 from voxrt.board.register_writes import (
     PROBLEMS,
@@ -44,10 +45,7 @@ from voxrt.board.register_writes import (
     tell_problems,
 )
 from voxrt.board.registers import MATERIALS, REGISTERS
-from voxrt.board.scene import Scene, check_memory, octree_span
-from voxrt.board.scene_memory import LoadedScene
 from voxrt.board.view import FEATURES, refit
-from voxrt.octree.words import EMPTY, move_pointers
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -57,6 +55,7 @@ if TYPE_CHECKING:
     from voxrt.board.designs.serial_link import SerialLink
     from voxrt.board.device import Device
     from voxrt.board.frame_drop import FrameDrop
+    from voxrt.board.loaded_scene import LoadedScene
     from voxrt.board.register_writes import Writes
     from voxrt.board.view import Camera, Lighting, View
     from voxrt.octree import Patch
@@ -70,8 +69,6 @@ _SCALE_BITS = 0x30
 _PERIOD_BITS = 0xFF00
 _SCENE_WORD = 0
 """Where the list of the present scene is in the table: that of power-on, or the last one that changed the scene."""
-_FIRST_WORDS = 4096
-"""Words of an octree that are read at first; most of a small one."""
 _FREE_WORDS = (1024, 1536)
 """Parts of the table where other lists of the host are written, in turn."""
 _LIST_WORDS = 512
@@ -129,6 +126,7 @@ class SerialDevice:
         blocks = 1 << configuration["block_bits"]
         if self.frame_buffer:
             blocks = int(link.read(SDRAM_REGISTERS["blocks"], 1)[0])
+            link.write(SDRAM_REGISTERS["page"], [0])  # a host that was killed left another one
         self.identity = Identity(
             name=f"board at {link.name}, {lanes} lane{'' if lanes == 1 else 's'}",
             version=f"{version >> 8 & 0xFF}.{version & 0xFF}",
@@ -143,32 +141,14 @@ class SerialDevice:
 
     def loaded(self) -> LoadedScene | None:
         """Read the scene that the board shows, and where it is; None if its words are no octree."""
-        root, depth = self._core("root")["address"], self._core("depth")["depth"]
-        if root >= self.identity.capacity:
-            return None
-        memory = np.full(self.identity.capacity, EMPTY, np.uint32)  # what is not read yet ends every path
-        start = stop = root
-        first, end = root, root + _FIRST_WORDS
-        while first < start or end > stop:  # a level more each time, at least
-            end = min(end, len(memory))
-            for low, high in ((first, start), (stop, end)):
-                if low < high:
-                    memory[low:high] = self.read_memory(low, high - low)
-            start, stop = min(first, start), max(stop, end)
-            first, end = octree_span(memory, root, depth)
-            first, end = (root, root + 1) if end == 1 else (min(first, root), max(end, root + 1))
-            end = min(end, len(memory))
-        base = first // 8 * 8
-        words = move_pointers(memory[base : end + (base + 1 - end) % 8], -base)
-        words[0] = words[root - base]  # that of an edited scene is any word
-        try:
-            check_memory(words, depth)
-        except Refused:
-            return None
         rows = _material_rows(self._link.read(TABLE + 4 * _SCENE_WORD, CAMERAS_WORD))
         colours = np.stack([rows >> 16 & 0xFF, rows >> 8 & 0xFF, rows & 0xFF], axis=1).astype(np.uint8)
         mirrors = (rows >> 24 & 1).astype(np.bool_)
-        return LoadedScene(Scene("the scene on the board", depth, words, colours, mirrors, roots=(root - base,)), base)
+        root, depth = self._core("root")["address"], self._core("depth")["depth"]
+        found = read_back(self.read_memory, self.identity.capacity, root, depth)
+        if found is None:
+            return None
+        return replace(found, scene=replace(found.scene, colours=colours, mirrors=mirrors), shown=True)
 
     def registers(self) -> Mapping[str, int]:
         """Read all registers, by name: the ray tracer's, then the board's."""
@@ -312,7 +292,8 @@ class SerialDevice:
         before = self._link.read(place, CAMERAS * CAMERA_WORDS)
         self._write_board("control", control | STEERED)
         try:
-            self._write_checked(place, cameras)
+            if not np.array_equal(before, cameras):
+                self._write_checked(place, cameras)
             self._play(writes, _SCENE_WORD)
         except DeviceError:
             self._write_checked(place, before)

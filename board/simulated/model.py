@@ -113,6 +113,9 @@ class ModelDevice:
         """What it is and what it can hold."""
         return self._identity
 
+    def loaded(self) -> None:
+        """Return None: nothing was in the memory."""
+
     def registers(self) -> Mapping[str, int]:
         """Return what the registers of the hardware would hold."""
         registers = {"root": self._memory.root, "depth": self._memory.depth}

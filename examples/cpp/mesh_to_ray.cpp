@@ -28,7 +28,7 @@ int main() {
     const double frame[12] = {scale, 0, 0, shift, 0, scale, 0, shift, 0, 0, scale, shift};
     const std::vector<voxelize::PartView> parts = {{.kind = voxelize::PartKind::mesh, .mesh = &mesh, .frame = frame}};
 
-    const voxelize::SparseVoxels voxels = voxelize::voxelize(depth, parts, 1, voxelize::Fill::solid, 0);
+    const voxelize::SparseVoxels voxels = voxelize::voxelize(depth, parts, 1, 0);
     std::printf("%lld voxels, inside told by mode '%s'\n", static_cast<long long>(voxels.object_voxels[0]),
                 voxelize::kObjectModeNames[voxels.object_modes[0]]);
 

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from voxrt.octree.camera.camera import Triple  # noqa: TC001 - manifests are read by the annotations of this class
+
+if TYPE_CHECKING:
+    from collections.abc import Set as AbstractSet
 
 BOUNCE_LIMIT = 15
 """The most reflections per ray."""
@@ -63,6 +66,10 @@ class Lighting:
         """Those of :data:`FEATURES` that a ray tracer needs for it."""
         wanted = {"light": self.on, "mirrors": self.bounces > 0}
         return frozenset(name for name, is_wanted in wanted.items() if is_wanted)
+
+    def within(self, features: AbstractSet[str]) -> Lighting:
+        """Give the same lighting without what needs others of :data:`FEATURES` than these."""
+        return replace(self, on=self.on and "light" in features, bounces=self.bounces if "mirrors" in features else 0)
 
     @property
     def shading(self) -> Shading:

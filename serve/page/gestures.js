@@ -11,6 +11,12 @@ const TAP = { seconds: 0.4, pixels: 12 };
  * pan: (right: number, down: number) => void, dolly: (factor: number) => void, focus: (x: number, y: number) =>
  * void }} Actions */
 
+/** A pointer goes on belonging to an element that it leaves. A locked mouse has no pointer. @param {Element} element
+ * @param {number} id */
+export function capture(element, id) {
+  if (!document.pointerLockElement) element.setPointerCapture(id);
+}
+
 export class Gestures {
   /** @type {Map<number, Place & { pans: boolean }>} by id */ pointers = new Map();
   /** @type {Place & { spread: number }} where the pointers were when the camera moved last */
@@ -44,7 +50,7 @@ export class Gestures {
 
   /** @param {PointerEvent} event */ begin(event) {
     this.canvas.focus();
-    this.canvas.setPointerCapture(event.pointerId);
+    capture(this.canvas, event.pointerId);
     const turning = event.pointerType === "touch" ? 0 : this.turning;
     const pans = event.button !== turning || event.shiftKey || event.ctrlKey || event.metaKey;
     this.step();

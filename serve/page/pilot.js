@@ -15,6 +15,8 @@ import { scale } from "./vectors.js";
  * => void }} Page */
 
 const MODES = /** @type {const} */ (["orbit", "fly", "walk"]);
+/** Whether somebody walks, by foot alone: walker.js. */
+const walks = () => Boolean($("walk") && isPressed($("walk")));
 /** Whether turns are those of the eye. */ const flies = () => !isPressed($("orbit"));
 /** @param {Pose} view */ const mirrored = ({ flipX, flipY }) => [flipX ? -1 : 1, flipY ? -1 : 1];
 
@@ -22,6 +24,8 @@ const MODES = /** @type {const} */ (["orbit", "fly", "walk"]);
  * @param {Page} app @param {HTMLCanvasElement} canvas @param {Commands} commands @param {(x: number, y: number) =>
  * void} focus */
 export function makePilot(app, canvas, commands, focus) {
+  /** @param {Move} how */ const go = (how) => walks() || app.change(how);
+  /** @param {number} factor */ const approach = (factor) => go((now) => dolly(now, factor, app.limit()));
   const across = () => measure([canvas.clientWidth, canvas.clientHeight]);
   const gestures = new Gestures(canvas, {
     turn: (right, down) =>
@@ -33,29 +37,27 @@ export function makePilot(app, canvas, commands, focus) {
           : orbit(now, right * angle * x, down * angle * y);
       }),
     pan: (right, down) =>
-      app.change((now) => {
+      go((now) => {
         const [x, y] = mirrored(now);
         return pan(now, (right * x) / across(), (down * y) / across(), app.limit());
       }),
-    dolly: (factor) => app.change((now) => dolly(now, factor, app.limit())),
+    dolly: approach,
     focus,
   });
   const flight = new Flight($("pad"), {
     commands,
-    fly: (right, up, forward) => {
-      if ($("walk") && isPressed($("walk"))) return; // walker.js
-      app.change((now) => {
+    fly: (right, up, forward) =>
+      go((now) => {
         const [x, y] = mirrored(now);
         return fly(now, scale([right * x, up * y, forward], app.side()), app.limit());
-      });
-    },
+      }),
     rotate: (right, up) =>
       app.change((now) =>
         flies()
           ? look(now, right * mirrored(now)[0], up * mirrored(now)[1])
           : orbit(now, -right * mirrored(now)[0], -up * mirrored(now)[1]),
       ),
-    dolly: (factor) => app.change((now) => dolly(now, factor, app.limit())),
+    dolly: approach,
   });
   $("fly").onclick = () => setMode("fly");
   $("orbit").onclick = () => setMode("orbit");

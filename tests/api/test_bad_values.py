@@ -156,3 +156,10 @@ def test_large_arrays_are_made_only_if_asked_for():
 def test_an_option_that_is_not_there_is_named():
     with pytest.raises(TypeError, match=r"build\(\) has no option 'fil'; it has .*fill"):
         voxrt.build("any.obj", fil="solid")
+
+
+@pytest.mark.parametrize("grid", [{"depth": 4, "bounds": (0, 0, 0, 1e300, 1, 1)}, {"voxel_size": 1e200}])
+def test_grids_whose_squares_overflow_are_empty(grid):
+    corners = [[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]]
+    with pytest.raises(DoesNotFitError, match="the memory is empty"):
+        voxrt.build((corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]), **grid)

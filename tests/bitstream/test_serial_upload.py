@@ -11,7 +11,9 @@ from fakes.ecp5_board import Board
 from fakes.serial_terminal import terminal
 
 import voxrt
+from voxrt.board.registers import REGISTERS
 from voxrt.boards.board_scenes import load_scene
+from voxrt.octree import Octree, diff
 from voxrt.views.viewpoint import orbit
 
 pytest.importorskip("serial", reason="pyserial is not installed")
@@ -43,6 +45,28 @@ def test_upload(house):
     board.play(2048, 16)
     expected = voxrt.render(rom, orbit(rom, size)[0], size=size, engine="model").colour
     np.testing.assert_array_equal(board.screen(), expected)
+
+
+def test_what_changed_little_is_sent_as_a_patch(tmp_path):
+    """What Live of Blender does: a command for every change."""
+    world = voxrt.World(voxrt.build("examples/house.obj", depth=5).rom)
+    board, written = Board(sdram=True), []
+    put = board.put
+    board.put = lambda address, value: (written.append(address >= 0x800000), put(address, value))[1]
+    with terminal(board) as port:
+        for number in range(3):
+            rom = world.rom()
+            voxrt.convert(rom, tmp_path / "house.blob")
+            written.clear()
+            finished = run("upload", tmp_path / "house.blob", "--to", f"serial:{port}")
+            assert finished.returncode == 0, finished.stderr
+            words = len(rom.octree.words)
+            assert sum(written) == words if number == 0 else 0 < sum(written) < words // 8
+            root = board.core.read(REGISTERS["root"][0])
+            memory = board.core.read_memory(0, 2 * words + 7)
+            memory[0] = memory[root]
+            assert diff(Octree(5, memory), rom.octree).voxels == 0
+            world.fill(voxrt.Box((10 + number, 10, 10), (13 + number, 12, 13)), number % 2)
 
 
 def test_dry_run_writes_nothing(house):

@@ -81,6 +81,21 @@ def test_edits_are_those_of_a_whole_build(options):
         np.testing.assert_array_equal(shown(rom.octree, rom.materials), shown(tree, materials))
 
 
+def test_what_leaves_the_grid_is_cut_off():
+    """As in a whole build on the same grid: partly, wholly, and back again."""
+    options = voxrt.BuildOptions(depth=5)
+    things = crowd()
+    reader, result, memory = opened(options)
+    for place in ((6.3, 0.4, 0.3), (50, 0, 0), (-2.9, 6.2, -3.1), (1.2, 0.4, 0.3)):
+        things[1].location = place
+        bpy.context.view_layer.update()
+        assert edited(reader, memory, "thing 1")
+        memory.commit()
+        rom = memory.rom()
+        tree, materials = whole(result.rom.grid, options)
+        np.testing.assert_array_equal(shown(rom.octree, rom.materials), shown(tree, materials))
+
+
 def test_new_colours_without_end_need_a_whole_build():
     things = crowd()
     reader, _, memory = opened(voxrt.BuildOptions(depth=4))
@@ -97,11 +112,11 @@ def test_new_colours_without_end_need_a_whole_build():
 
 
 def test_what_needs_a_whole_build():
-    """An object that leaves the grid, one with a texture, one that is not there; a rule that looks at neighbours."""
+    """An object that is far away, one with a texture, one that is not there; a rule that looks at neighbours."""
     options = voxrt.BuildOptions(depth=5)
     things = crowd()
     reader, _, memory = opened(options)
-    things[1].location = (50, 0, 0)
+    things[1].location = (1e6, 0, 0)
     bpy.context.view_layer.update()
     assert not edited(reader, memory, "thing 1")
     things[1].location = (1.2, 0.4, 0.3)

@@ -126,7 +126,10 @@ def test_the_brushes_of_blender_are_no_library_outside():
     """Files in which somebody has painted link them; this one comes with Blender."""
     folder = Path(bpy.utils.system_resource("SCRIPTS")) / "startup/bl_app_templates_system/2D_Animation"
     path = folder / "startup.blend"
-    assert refusal(path) == "has no triangles to voxelize; check that renders show a mesh"
+    assert refusal(path) == (
+        "has no triangles to voxelize: the scene 'Scene' has 1 camera, 1 grease pencil; "
+        "check that renders of that scene show a mesh"
+    )
 
 
 def test_missing_libraries_are_refused(cube_file):

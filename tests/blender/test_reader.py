@@ -159,7 +159,8 @@ def test_box_colliders_are_rounded_to_powers_of_two():
             "box",
             "object 'cube'.voxrt_colider: unknown property for voxrt; did you mean voxrt_collider?",
         ),
-        ("voxrt_rule", "all", "object 'cube'.voxrt_rule: invalid enum value 'all'; correct the property"),
+        ("voxrt_rule", "all", "object 'cube'.voxrt_rule: invalid enum value 'all'; use touch, centre, half"),
+        ("voxrt_fill", "together", "object 'cube'.voxrt_fill: invalid enum value 'together'; use solid, surface, auto"),
         ("voxrt_material", "gold", "object 'cube'.voxrt_material: no material 'gold' in the file; it has no materials"),
     ],
 )
@@ -172,8 +173,13 @@ def test_wrong_properties_are_refused(key, value, problem):
 
 
 def test_a_scene_without_meshes_is_refused():
+    """With what the scene has instead."""
     scenes.empty_file()
-    with pytest.raises(voxrt.AssetError, match="has no triangles to voxelize; check that renders show a mesh"):
+    with pytest.raises(voxrt.AssetError, match="to voxelize: the scene 'Scene' has no objects; check that renders"):
+        read()
+    scenes.cube().hide_render = True
+    scenes.cube(name="ignored")["voxrt_ignore"] = True
+    with pytest.raises(voxrt.AssetError, match="has 2 mesh; show a mesh in renders: hidden from them are 1"):
         read()
 
 

@@ -88,6 +88,30 @@ def test_fewer_pixels_while_something_moves(looking):
     assert shown.view(looking, coarse=False).frame().material.shape == (64, 96)
 
 
+class Clock:
+    """A clock that goes on by a step whenever it is read."""
+
+    now = step = 0.0
+
+    def monotonic(self):
+        self.now += self.step
+        return self.now
+
+
+def test_pictures_that_take_long_have_fewer_pixels_while_something_moves(looking, monkeypatch):
+    from voxrt_extension import viewport
+
+    shown = viewport.Viewport()
+    shown.update(bpy.context.evaluated_depsgraph_get())
+    clock = Clock()
+    monkeypatch.setattr(viewport, "time", clock)
+    heights = []
+    for clock.step in (0.5, 0.5, 0.5, 0.05, 0.001, 0.001, 0.001):
+        heights.append(shown.frame(looking, coarse=True).material.shape[0])
+        assert shown.frame(looking, coarse=False).material.shape == (64, 96)
+    assert heights == [32, 16, 8, 8, 8, 16, 32]
+
+
 @pytest.mark.parametrize("change", ["a new object", "a material", "a setting"])
 def test_other_changes_build_the_whole(looking, change):
     from voxrt_extension.viewport import Viewport

@@ -89,6 +89,18 @@ def test_a_scene_changes_on_the_running_board():
         assert board.registers[CONTROL] & 0xF == RUN | TURN
 
 
+def test_cameras_that_stay_are_not_written_again():
+    board, scene = Board(sdram=True), boxes(1)
+    show(board, scene)
+    put, cameras = board.put, range(0x4000 + 4 * 2048, 0x8000)
+    written = []
+    board.put = lambda address, value: (written.append(address in cameras), put(address, value))[1]
+    show(board, boxes(2))
+    assert written
+    assert not any(written)
+    np.testing.assert_array_equal(board.screen(), picture_of(boxes(2), view_of(boxes(2), SIZE)))
+
+
 def test_words_of_an_sdram_have_pages():
     board = Board(sdram=True)
     device = opened(board)
@@ -99,6 +111,13 @@ def test_words_of_an_sdram_have_pages():
     np.testing.assert_array_equal(device.read_memory(start, 300), words)
     np.testing.assert_array_equal(board.core.read_memory(start, 300), words)
     assert board.registers[0x1030] == 0
+
+
+def test_a_host_that_was_killed_left_another_page():
+    board, scene = Board(sdram=True), boxes(4)
+    show(board, scene)
+    board.registers[0x1030] = 1
+    np.testing.assert_array_equal(opened(board).loaded().scene.words, scene.words)
 
 
 def test_a_board_with_frames_keeps_the_size_of_the_screen():

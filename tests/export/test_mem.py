@@ -1,3 +1,4 @@
+import os
 import zlib
 
 import numpy as np
@@ -9,6 +10,7 @@ from hypothesis import strategies as st
 from voxrt import export
 from voxrt.export.word_file import mem_crc32, mem_pieces
 from voxrt.octree import RomError, _native
+from voxrt.voxelize import AssetError
 
 words32 = st.lists(st.integers(0, 2**32 - 1), max_size=40)
 
@@ -116,3 +118,13 @@ def test_long_texts_are_cut_into_pieces_for_the_threads():
 @pytest.mark.parametrize("text", [b"0000000g\n", b"0000000a\n", b"00000000 ", b"0000000\n", b"-0000000\n"])
 def test_other_layouts_are_left_to_the_reader_of_all(text):
     assert _native.read_mem_text(text) is None
+
+
+@pytest.mark.parametrize("suffix", [".mem", ".coe", ".mif", ".bin", ".blob", ".txt", ".vox"])
+def test_what_may_never_end_is_not_read(suffix, tmp_path):
+    pipe, endless = tmp_path / f"pipe{suffix}", tmp_path / f"endless{suffix}"
+    os.mkfifo(pipe)
+    endless.symlink_to("/dev/zero")
+    for path in (pipe, endless):
+        with pytest.raises((RomError, AssetError), match="is a pipe or a device; save it to a file, and name that"):
+            export.read_any(path)

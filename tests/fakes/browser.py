@@ -24,6 +24,9 @@ _ARGUMENTS = (
     "--proxy-server=direct://",
     "--host-resolver-rules=MAP voxrt.example 127.0.0.1, MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
 )
+_MOUSE = "--blink-settings=primaryPointerType=4,availablePointerTypes=4,primaryHoverType=2,availableHoverTypes=2"
+"""A mouse is there, which pages can lock."""
+
 RESTS = "document.querySelector('#stage').getAttribute('aria-busy') === 'false'"
 """The picture is as fine as it will be."""
 
@@ -34,11 +37,13 @@ _OPENER = urllib.request.build_opener(urllib.request.ProxyHandler({}))
 
 
 class Browser:
-    def __init__(self, driver: str, size: tuple[int, int], dark: bool = True) -> None:
+    def __init__(self, driver: str, size: tuple[int, int], dark: bool = True, mouse: bool = False) -> None:
         self._driver = driver
         arguments = [*_ARGUMENTS, f"--window-size={size[0]},{size[1]}"]
         if dark:
             arguments.append("--force-dark-mode")
+        if mouse:
+            arguments.append(_MOUSE)
         binary = shutil.which("chromium") or shutil.which("chromium-browser")
         options = {"args": arguments, "binary": binary}
         capabilities = {"goog:chromeOptions": options, "goog:loggingPrefs": {"browser": "ALL"}}
@@ -155,13 +160,20 @@ class Browser:
         )
         return x, y
 
-    def key(self, key: str, code: str = "") -> None:
-        """Press a key and let it go."""
+    @contextmanager
+    def held(self, key: str, code: str = ""):
+        """Hold a key as long as the context lasts."""
         text = {"text": key} if len(key) == 1 else {"text": "\r"} if key == "Enter" else {}
         number = {"Tab": 9, "Enter": 13, "Escape": 27, "ArrowRight": 39, "ArrowLeft": 37}.get(key, ord(key[0].upper()))
         known = {"key": key, "code": code or key, "windowsVirtualKeyCode": number}
         self.cdp("Input.dispatchKeyEvent", type="keyDown", **known, **text)
+        yield
         self.cdp("Input.dispatchKeyEvent", type="keyUp", **known)
+
+    def key(self, key: str, code: str = "") -> None:
+        """Press a key and let it go."""
+        with self.held(key, code):
+            pass
 
     def give_files(self, selector: str, paths: list[str]) -> None:
         found = self._call("POST", f"{self._session}/element", {"using": "css selector", "value": selector})
@@ -190,7 +202,7 @@ class Browser:
 
 
 @contextmanager
-def chromium(size: tuple[int, int] = (1280, 800), dark: bool = True):
+def chromium(size: tuple[int, int] = (1280, 800), dark: bool = True, mouse: bool = False):
     if shutil.which("chromedriver") is None or not (shutil.which("chromium") or shutil.which("chromium-browser")):
         pytest.skip("no chromium and chromedriver here; apt install chromium chromium-driver")
     with subprocess.Popen(["chromedriver", "--port=0"], stdout=subprocess.PIPE, text=True) as driver:
@@ -198,7 +210,7 @@ def chromium(size: tuple[int, int] = (1280, 800), dark: bool = True):
             port = next(
                 line.split("port ")[1].split(".")[0].strip() for line in driver.stdout if "started successfully" in line
             )
-            browser = Browser(f"http://127.0.0.1:{port}", size, dark)
+            browser = Browser(f"http://127.0.0.1:{port}", size, dark, mouse)
             try:
                 yield browser
             finally:

@@ -66,6 +66,9 @@ class FakeDevice:
         self.writes = 0
         self.calls = []  # names of the methods that changed something, in order
 
+    def loaded(self):
+        return None
+
     def registers(self):
         return {"root": self.root, "depth": self.depth, "frames": self.frames}
 

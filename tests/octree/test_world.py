@@ -128,6 +128,42 @@ def test_random_edits_of_small_worlds_are_canonical_after_each(depth, steps):
         model.check_device()
 
 
+@pytest.mark.parametrize("depth", [2, 3, 5])
+def test_a_world_goes_on_where_a_memory_with_its_patches_was(depth):
+    """Blocks stay where they are, and those that the root does not reach, whatever they hold, are used first."""
+    rng = np.random.default_rng(depth)
+    model = Model(rng.integers(0, 3, (1 << depth,) * 3).astype(np.uint8), rng)
+    for _ in range(20):
+        for _ in range(8):
+            model.step()
+        model.commit()
+        root = model.world.live_roots[-1]
+        words = model.device.copy()
+        words[0] = words[root]
+        reached = octree.from_dense(model.cube).blocks  # equal blocks are one
+        model.world = world_of(Octree(depth, words), undo_steps=UNDO_STEPS, root=root)
+        model.undo, model.redo, model.live = [], [], {root: model.cube}
+        assert model.world.live_roots == (root,)
+        assert (model.world.image == words).all()
+        figures = model.world.figures()
+        assert (figures.blocks, figures.kept) == (reached, int(root != 0))
+        assert figures.free == (len(words) - 1) // 8 - reached - int(root != 0)
+        model.check(lambda cube: octree.from_dense(cube).words)
+        model.check_device()
+
+
+def test_the_root_of_a_world_has_the_word_of_the_first():
+    tree = octree.from_points([[1, 2, 3]], [1], depth=2)
+    for root in (1, 17):
+        with pytest.raises(ValueError, match="root"):
+            world_of(tree, root=root)
+    words = np.full(17, 0xFFFFFF00, np.uint32)
+    words[[0, 1, 9]] = 9, 9, 0xFFFFFF01
+    assert world_of(Octree(2, words), root=1).live_roots == (1,)
+    words[1], words[9:17] = 9, 0xFFFFFF01  # uniform blocks are no memory to go on with
+    assert world_of(Octree(2, words), root=1).live_roots == (0,)
+
+
 LONG = 6250
 """Operations of a world that is edited for long: 100,000 in worlds of depths 1 to 16."""
 

@@ -1,5 +1,7 @@
 """Meshes with known answers, and scenes of them, made without the code under test."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from voxrt.voxelize import EMPTY, Material, Mesh, Scene, SceneObject
@@ -73,10 +75,7 @@ def icosphere(level, centre=(0, 0, 0), radius=1.0, material=1):
 
 def scene_of(*items):
     objects = [item if isinstance(item, SceneObject) else SceneObject("o", item) for item in items]
-    named = tuple(
-        SceneObject(f"{o.name}{i}", o.mesh, o.transform, o.colliders, o.collider_material)
-        for i, o in enumerate(objects)
-    )
+    named = tuple(replace(o, name=f"{o.name}{i}") for i, o in enumerate(objects))
     return Scene("test", named, MATERIALS)
 
 

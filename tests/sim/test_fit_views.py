@@ -29,7 +29,7 @@ def cameras_around(rom):
 
 @pytest.mark.parametrize("flat", [False, True])
 def test_views_are_those_of_aimed_cameras(rom, flat):
-    views = _model.FitViews(_model.Memory(rom.octree.words, rom.octree.depth), palette_of(rom), flat)
+    views = _model.FitViews(_model.Memory(rom.octree.words, rom.octree.depth), palette_of(rom.materials), flat)
     cameras = list(cameras_around(rom))
     np.testing.assert_array_equal(views.cameras(), [registers_of(camera) for camera in cameras])
     coarse = octree.coarsen(rom.octree, 1)

@@ -87,6 +87,16 @@ def test_solids_are_the_same_with_every_instruction_set(rule, fill):
                 np.testing.assert_array_equal(words, all_words[0])
 
 
+def test_volumes_are_the_same_with_every_instruction_set():
+    for level, depth in ((1, 6), (2, 8), (4, 5)):
+        scene = one_object(icosphere(level))
+        parts, _ = parts_of(scene, fit_grid(scene, depth=depth), fill="solid", rule="touch")
+        found = [_native.find_volumes(parts, threads=1, instructions=name) for name in _native.INSTRUCTION_SETS]
+        for volumes in found[1:]:
+            for one, first in zip(volumes, found[0], strict=True):
+                np.testing.assert_array_equal(one, first)
+
+
 def test_an_instruction_set_that_is_not_there_is_refused():
     scene = one_object(icosphere(0))
     parts, how = parts_of(scene, fit_grid(scene, depth=3), fill="solid", rule="touch")

@@ -1,3 +1,5 @@
+import os
+
 import numpy as np
 import pytest
 from oracles.gltf_writer import GltfWriter
@@ -18,6 +20,9 @@ def test_missing_file_and_folder_are_refused(tmp_path):
     with pytest.raises(AssetError, match=r"gone\.glb: no such file; check the path"):
         load(tmp_path / "gone.glb")
     (tmp_path / "folder.obj").mkdir()
+    os.mkfifo(tmp_path / "pipe.obj")
+    with pytest.raises(AssetError, match=r"pipe\.obj: is a pipe or a device; save it to a file, and name that"):
+        load(tmp_path / "pipe.obj")
     with pytest.raises(AssetError, match=r"folder\.obj: is a folder, not a file"):
         load(tmp_path / "folder.obj")
 

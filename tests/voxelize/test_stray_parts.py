@@ -61,3 +61,12 @@ def test_faces_without_area_do_not_stretch_the_grid(corners):
     assert fit_grid(scene_with(SceneObject("box", mesh)), depth=4).voxel_size == 1
     alone = Mesh(positions[8:], [[0, 1, 2]], [1])
     assert fit_grid(scene_with(SceneObject("line", alone)), depth=1).voxel_size == 3
+
+
+def test_what_stretches_no_grid_is_no_stray_part():
+    line = Mesh([[900, 0, 0], [900, 0, 0], [0, 0, 0]], [[0, 1, 2]], [1])
+    scene = scene_with(SceneObject("body", joined(BOX, line)))
+    assert fit_grid(scene, depth=4).voxel_size == 1
+    assert find_stray_parts(scene, "auto") is None
+    alone = scene_with(SceneObject("body", BOX), SceneObject("line", line))
+    assert find_stray_parts(alone, "auto").names == ("line",)

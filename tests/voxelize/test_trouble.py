@@ -159,6 +159,8 @@ def test_fit_grid():
     assert fit_grid(scene, voxel_size=100.0).depth == 1
     with pytest.raises(DoesNotFitError, match=r"use a voxel size of .* m or more"):
         fit_grid(scene, voxel_size=1e-5)
+    with pytest.raises(DoesNotFitError, match=r"needs 4e\+300 voxels per side"):
+        fit_grid(scene, voxel_size=1e-300)
     with pytest.raises(ValueError, match="one of depth and voxel_size"):
         fit_grid(scene)
     with pytest.raises(AssetError, match="nothing to voxelize"):

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
-from oracles.meshes import box_mesh, icosphere, joined, one_object, scene_of
+from oracles.meshes import box_mesh, icosphere, joined, one_object, scene_of, without
 from oracles.voxels import dense
 
 from voxrt.voxelize import Grid, Mesh, SceneObject, voxelize
@@ -154,6 +154,70 @@ def test_every_face_stored_twice_counts_once():
         mesh = Mesh(box.positions, np.concatenate([box.triangles, back]).astype(np.int32), np.ones(24, np.uint8))
         result = voxelize(one_object(mesh), GRID)
         assert (dense(result.voxels) != 0).sum() == 11 * 9 * 7
+
+
+def cut_apart(quad, choices):
+    """Cut a quad into one, two or four: its neighbours keep their long edges, and T-junctions come about."""
+    corners = [np.array(corner, float) for corner in quad]
+    middles = [(corners[i] + corners[(i + 1) % 4]) / 2 for i in range(4)]
+    centre = sum(corners) / 4
+    return choices.choice(
+        [
+            [corners],
+            [[corners[0], middles[0], middles[2], corners[3]], [middles[0], corners[1], corners[2], middles[2]]],
+            [[corners[0], corners[1], middles[1], middles[3]], [middles[3], middles[1], corners[2], corners[3]]],
+            [[corners[i], middles[i], centre, middles[i - 1]] for i in range(4)],
+        ]
+    )
+
+
+@pytest.mark.parametrize("turned", [0.03, 0.3])
+@pytest.mark.parametrize("seed", range(6))
+def test_faces_are_wound_alike_across_t_junctions(turned, seed):
+    choices = random.Random(seed)
+    block = np.pad(np.ones((2, 3, 1), int), 1)
+    quads = []
+    for cell, axis in walls_of(block):
+        outwards = quad_of(cell, axis) if block[cell] else quad_of(cell, axis)[::-1]
+        for quad in cut_apart(outwards, choices):
+            times = choices.choice([1, 1, 1, 1, 2])
+            quads += [quad[::-1] if choices.random() < turned else quad for _ in range(times)]
+    result = voxelize(one_object(mesh_of(quads)), GRID)
+    expected = np.zeros((16, 16, 16), bool)
+    expected[4:10, 4:13, 4:7] = True
+    np.testing.assert_array_equal(dense(result.voxels) != 0, expected)
+
+
+@pytest.mark.parametrize("share", [0, 0.1, 0.5])
+@pytest.mark.parametrize("gone", [3, 20, 600])
+def test_a_surface_with_holes_stored_once_for_each_side_counts_once(share, gone):
+    """As the same surface stored once does: a ball with small holes, one with larger ones, and what is left of it."""
+    rng = np.random.default_rng(gone)
+    ball = icosphere(3, (8, 8, 8), 6.6)
+    once = without(ball, rng.permutation(len(ball.triangles))[:gone])
+    twice = np.concatenate([once.triangles, np.roll(once.triangles[:, ::-1], 1, axis=1)])
+    twice = np.where(rng.random((len(twice), 1)) < share, twice[:, ::-1], twice)[rng.permutation(len(twice))]
+    mesh = Mesh(once.positions, twice.astype(np.int32), np.ones(len(twice), np.uint8))
+    for fill in ("solid", "auto", "surface"):
+        made, single = (voxelize(one_object(one), GRID, fill=fill) for one in (mesh, once))
+        np.testing.assert_array_equal(made.voxels.brick_masks, single.voxels.brick_masks)
+        if gone < 600:  # pieces that hang together by corners face either way
+            assert made.objects[0].mode == single.objects[0].mode
+    assert not share or kinds_of(voxelize(one_object(mesh), GRID))
+    if gone == 3:
+        whole = voxelize(one_object(ball), GRID)
+        np.testing.assert_array_equal(voxelize(one_object(mesh), GRID).voxels.brick_masks, whole.voxels.brick_masks)
+
+
+def test_two_sided_sheets_stay_as_they_are():
+    """A sheet between voxels covers both layers beside it, and none is turned."""
+    sheet = np.array([[1.0, 1, 8], [15, 1, 8], [15, 15, 8], [1, 15, 8]])
+    faces = np.array([[0, 1, 2], [0, 2, 3], [0, 2, 1], [0, 3, 2]], np.int32)
+    result = voxelize(one_object(Mesh(sheet, faces, np.ones(4, np.uint8))), GRID)
+    filled = dense(result.voxels) != 0
+    assert filled[1:15, 1:15, 7:9].all()
+    assert filled.sum() == 14 * 14 * 2
+    assert kinds_of(result) == {}
 
 
 def klein_bottle(n=24):

@@ -193,25 +193,27 @@ def test_png_files_are_decoded_as_natively(tmp_path: Path) -> None:
         assert one == {"size": [native.shape[1], native.shape[0]], "sha": sha(native)}, path
 
 
-def test_objects_of_gltf_have_rules_of_their_own(tmp_path: Path) -> None:
+def test_objects_of_gltf_have_rules_and_fills_of_their_own(tmp_path: Path) -> None:
     glb = (ROOT / "examples" / "courtyard.glb").read_bytes()
     length = int.from_bytes(glb[12:16], "little")
     described = json.loads(glb[20 : 20 + length])
     files = []
-    for rule in ("half", "round"):
+    for rule, fill in (("half", "solid"), ("touch", "surface"), ("round", "solid"), ("half", "together")):
         for shown in (one for one in described["nodes"] if "mesh" in one):
-            shown["extras"] = {**shown.get("extras", {}), "voxrt_rule": rule}
+            shown["extras"] = {**shown.get("extras", {}), "voxrt_rule": rule, "voxrt_fill": fill}
         text = json.dumps(described).encode()
         text += b" " * (-len(text) % 4)
         rest = glb[20 + length :]
         head = glb[:8] + struct.pack("<III", 20 + len(text) + len(rest), len(text), 0x4E4F534A)
-        files.append(tmp_path / f"{rule}.glb")
+        files.append(tmp_path / f"{rule} {fill}.glb")
         files[-1].write_bytes(head + text + rest)
-    found, refused = page_builds(*([file] for file in files), depth=6)
-    native = voxrt.build(files[0], depth=6).rom
-    assert_same_memory(found, native)
-    assert found["words"] != sha(voxrt.build(ROOT / "examples" / "courtyard.glb", depth=6).octree.words)
-    assert "is no rule; name one of touch, centre, half" in refused["problem"]
+    *found, no_rule, no_fill = page_builds(*([file] for file in files), depth=6)
+    plain = sha(voxrt.build(ROOT / "examples" / "courtyard.glb", depth=6).octree.words)
+    for file, one in zip(files, found, strict=False):
+        assert_same_memory(one, voxrt.build(file, depth=6).rom)
+        assert one["words"] != plain
+    assert "is no rule; name one of touch, centre, half" in no_rule["problem"]
+    assert "is no fill; name one of solid, surface, auto" in no_fill["problem"]
 
 
 def test_groups_within_objects_of_obj_are_no_objects(tmp_path: Path) -> None:

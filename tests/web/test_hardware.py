@@ -26,7 +26,7 @@ def job(rom: voxrt.Rom, camera: Camera, look: dict, **other: object) -> dict:
         "depth": rom.octree.depth,
         "camera": registers_of(camera),
         "size": SIZE,
-        "look": {"materials": palette_of(rom)[: len(rom.materials)].tolist(), **look},
+        "look": {"materials": palette_of(rom.materials)[: len(rom.materials)].tolist(), **look},
         "limit": len(rom.octree.words),
         **other,
     }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
     from voxrt.voxelize.authoring.declared_materials import Colour
     from voxrt.voxelize.collider_shapes import ColliderKind
-    from voxrt.voxelize.rules import Rule
+    from voxrt.voxelize.rules import ObjectFill, Rule
 
 
 class Author:
@@ -104,6 +105,7 @@ class Author:
         collider: ColliderKind | None = None,
         pow2: bool = True,
         rule: Rule | None = None,
+        fill: ObjectFill | None = None,
     ) -> None:
         """Add a solid as one object.
 
@@ -123,6 +125,8 @@ class Author:
             Whether a box collider is rounded up to powers of two voxels.
         rule
             Which voxels it fills: ``"touch"``, ``"centre"`` or ``"half"``; None for what the build says.
+        fill
+            Whether what it encloses is filled: ``"solid"``, ``"surface"`` or ``"auto"``; None for what the build says.
 
         Raises
         ------
@@ -134,7 +138,14 @@ class Author:
             The solid is empty, or the placement is not valid.
         """
         self.add_transformed(
-            name, solid, placement(translate, rotate, scale), material=material, collider=collider, pow2=pow2, rule=rule
+            name,
+            solid,
+            placement(translate, rotate, scale),
+            material=material,
+            collider=collider,
+            pow2=pow2,
+            rule=rule,
+            fill=fill,
         )
 
     def add_transformed(
@@ -147,6 +158,7 @@ class Author:
         collider: ColliderKind | None = None,
         pow2: bool = True,
         rule: Rule | None = None,
+        fill: ObjectFill | None = None,
     ) -> None:
         """Add a solid as :meth:`add` does, placed by a matrix (shape (4, 4), affine, column vectors)."""
         arguments.instance("solid", solid, Solid)
@@ -154,7 +166,8 @@ class Author:
         ids = np.concatenate([np.full(count, self._id_of(own, count), dtype=np.uint8) for own, count in runs])
         colliders = [] if collider is None else [collider_around(collider, positions, triangles, pow2=pow2)]
         mesh = Mesh(positions, triangles, ids)
-        self._enter(SceneObject(name, mesh, _finite(name, transform), tuple(colliders), int(ids[0]), rule=rule))
+        placed = _finite(name, transform)
+        self._enter(SceneObject(name, mesh, placed, tuple(colliders), int(ids[0]), rule=rule, fill=fill))
 
     def add_asset(
         self,
@@ -166,6 +179,7 @@ class Author:
         collider: ColliderKind | None = None,
         pow2: bool = True,
         rule: Rule | None = None,
+        fill: ObjectFill | None = None,
     ) -> None:
         """Add all objects of a loaded file, named ``name/…``.
 
@@ -186,6 +200,8 @@ class Author:
             Whether a box `collider` is rounded up to powers of two voxels.
         rule
             Which voxels those of its objects fill that have no rule of their own.
+        fill
+            Whether what those of its objects enclose is filled that have no fill of their own.
 
         Raises
         ------
@@ -216,8 +232,8 @@ class Author:
                 placed = outer @ one.transform
             flags = (one.hidden and not (collider and filling), one.represented)
             placed = _finite(path, placed)
-            made = SceneObject(path, mesh, placed, colliders, filling or 1, *flags, one.points, one.rule or rule)
-            self._enter(made)
+            made = SceneObject(path, mesh, placed, colliders, filling or 1, *flags, one.points)
+            self._enter(replace(made, rule=one.rule or rule, fill=one.fill or fill))
         for warning in asset.warnings:
             self._log.add(warning.kind, f"{name}: {warning.message}", warning.count)
 

@@ -1,19 +1,19 @@
 """Properties for voxrt that authors give to objects and materials: `extras` of glTF, custom properties of Blender.
 
 `voxrt_material` names the material that an object's faces take, or renames a material; `voxrt_collider` makes an
-object's mesh collide as a box, a sphere, a hull or a mesh; `voxrt_rule` says which voxels it fills; `voxrt_ignore`
-leaves an object out; `voxrt_reflect` makes a material, or what an object shows, a mirror.
+object's mesh collide as a box, a sphere, a hull or a mesh; `voxrt_rule` and `voxrt_fill` say which voxels it fills;
+`voxrt_ignore` leaves an object out; `voxrt_reflect` makes a material, or what an object shows, a mirror.
 """
 
 from __future__ import annotations
 
 import difflib
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, TypeVar, get_args, get_type_hints
 
 import msgspec
 
 from voxrt.voxelize.collider_shapes import ColliderKind  # noqa: TC001 -- msgspec reads the annotations
-from voxrt.voxelize.rules import Rule  # noqa: TC001
+from voxrt.voxelize.rules import ObjectFill, Rule  # noqa: TC001
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -32,10 +32,11 @@ class MaterialProperties(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class ObjectProperties(MaterialProperties, frozen=True, kw_only=True):
-    """The properties of an object: those of its faces, its collider, its rule, and whether it is left out."""
+    """The properties of an object: those of its faces, its collider, its rule and fill, and whether it is left out."""
 
     voxrt_collider: ColliderKind | None = None
     voxrt_rule: Rule | None = None
+    voxrt_fill: ObjectFill | None = None
     voxrt_ignore: bool | float = False
 
 
@@ -59,7 +60,8 @@ def checked_properties(
         return msgspec.convert(authored, kind)
     except msgspec.ValidationError as wrong:
         problem, here = explain(wrong, place)
-        raise error(here, problem, "correct the property") from None
+        choices = [one for form in get_args(get_type_hints(kind)[here.rpartition(".")[2]]) for one in get_args(form)]
+        raise error(here, problem, f"use {', '.join(choices)}" if choices else "correct the property") from None
 
 
 def explain(error: msgspec.ValidationError, place: str = "") -> tuple[str, str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
+from stat import S_ISDIR, S_ISREG
 from typing import TYPE_CHECKING
 
 from voxrt.voxelize.errors import AssetError
@@ -39,12 +40,23 @@ def as_text(name: str) -> str:
 
 def read_asset(path: Path) -> bytes:
     """Read a file whole; raise AssetError where it cannot be read."""
+    refuse_endless(path)
     try:
         data = path.read_bytes()
     except OSError as error:
         raise AssetError(path, f"cannot be read: {error.strerror}", fix="check the path and its permissions") from None
     refuse_pointer(path, data)
     return data
+
+
+def refuse_endless(path: Path) -> None:
+    """Raise AssetError for a pipe or a device: what is read from it may never end."""
+    try:
+        mode = path.stat().st_mode
+    except (OSError, ValueError):
+        return  # opening says why
+    if not (S_ISREG(mode) or S_ISDIR(mode)):
+        raise AssetError(path, "is a pipe or a device", fix="save it to a file, and name that")
 
 
 def refuse_pointer(path: object, data: bytes, place: str = "") -> None:

@@ -16,7 +16,10 @@ def log_left_out(log: WarningLog, opacity: float, cutoff: float, opaque_from: fl
     if opacity <= 0:
         message = "fully transparent faces were left out"
     elif cutoff == opaque_from:
-        message = f"faces less opaque than {opaque_from:g} were left out: a lower --opaque-from keeps them"
+        message = (
+            f"faces less opaque than {opaque_from:g} were left out: a lower --opaque-from keeps them, "
+            "unless their material has a threshold"
+        )
     else:
         message = "faces below the opacity threshold of their material were left out"
     log.add("transparent", message, faces)

@@ -23,7 +23,7 @@ from voxrt.voxelize.corner_normals import CornerNormals
 from voxrt.voxelize.errors import SceneWarning  # noqa: TC001 -- msgspec reads the annotations
 from voxrt.voxelize.materials import Material  # noqa: TC001 -- msgspec reads the annotations
 from voxrt.voxelize.mesh import Mesh
-from voxrt.voxelize.rules import Rule  # noqa: TC001 -- msgspec reads the annotations
+from voxrt.voxelize.rules import ObjectFill, Rule  # noqa: TC001 -- msgspec reads the annotations
 from voxrt.voxelize.scene import PointLight, Scene, SceneObject, Viewpoint
 
 if TYPE_CHECKING:
@@ -82,6 +82,7 @@ class ObjectsMessage(msgspec.Struct, frozen=True):
     hidden: list[bool]
     represented: list[bool]
     rules: list[Rule | None]
+    fills: list[ObjectFill | None]
 
 
 class SceneMessage(msgspec.Struct, frozen=True):
@@ -165,6 +166,7 @@ def scene_bytes(scene: Scene) -> list[bytes | memoryview]:
             [one.hidden for one in scene.objects],
             [one.represented for one in scene.objects],
             [one.rule for one in scene.objects],
+            [one.fill for one in scene.objects],
         ),
         [_mesh_message(one, appearances) for one in meshes],
         [_appearance_message(one, textures) for one in appearances],
@@ -226,6 +228,7 @@ def _scene(message: SceneMessage) -> Scene:
                 hidden=objects.hidden[i],
                 represented=objects.represented[i],
                 rule=objects.rules[i],
+                fill=objects.fills[i],
             )
             for i in range(_common_length(objects))
         ),

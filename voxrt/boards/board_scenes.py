@@ -5,16 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from voxrt import voxelize
 from voxrt.board.errors import Refused
-from voxrt.board.scene import Scene
+from voxrt.board.scene import MEMORY_SUFFIXES, Scene
 from voxrt.export import Blob, read_any
 from voxrt.octree import RomError
 from voxrt.options.shared import PREVIEW_SIZE
 from voxrt.serve.scene_process import ChildReader
-from voxrt.sim.engine_arguments import palette_of
+from voxrt.sim.engine_arguments import mirrors_of, palette_of
 from voxrt.views.pictures import animation_camera
 from voxrt.voxelize.assets import SUFFIXES
 
@@ -26,26 +24,24 @@ if TYPE_CHECKING:
 
 _STAGES = ("load", "fit", "colour", "voxelize", "octree")
 
-_MEMORY_SUFFIXES = (".blob", ".mem")
-ASSET_READER_SUFFIXES = (*_MEMORY_SUFFIXES, *sorted(set(SUFFIXES) - {".blend"}))
+ASSET_READER_SUFFIXES = (*MEMORY_SUFFIXES, *sorted(set(SUFFIXES) - {".blend"}))
 """Suffixes of the files that hold a scene, of strangers too: Blender is not made to read theirs."""
 
 
 def board_scene(blob: Blob) -> Scene:
     """Make the scene of a memory, with its author's camera, or with one that sees all of it."""
     rom = blob.rom
-    mirrors = np.zeros(256, dtype=np.bool_)
-    mirrors[: len(rom.materials)] = [material.mirror for material in rom.materials]
     camera = animation_camera(blob, PREVIEW_SIZE)
     return Scene(
         rom.name,
         rom.octree.depth,
         rom.octree.words,
-        palette_of(rom),
-        mirrors,
+        palette_of(rom.materials),
+        mirrors_of(rom.materials),
         camera,
         blob.lighting,
-        *((blob.animation.roots, blob.animation.period) if blob.animation else ((0,), None)),
+        blob.roots,
+        blob.animation.period if blob.animation else None,
         tuple(map(str, blob.provenance.warnings)),
         tuple(material.name for material in rom.materials),
     )
@@ -57,7 +53,7 @@ def load_scene(path: Path, depth: int | None = None, progress: Progress | None =
     `depth` is that of an asset, or of a memory without manifest; None for the default. RomError, AssetError or
     DoesNotFitError where the file is malformed or too large.
     """
-    if path.suffix.lower() in _MEMORY_SUFFIXES:
+    if path.suffix.lower() in MEMORY_SUFFIXES:
         blob, warnings = read_any(path, depth=depth)
         scene = board_scene(blob)
         scene = replace(scene, warnings=(*scene.warnings, *map(str, warnings)))

@@ -112,7 +112,7 @@ def build_animation(
         estimated(plan.estimate)
     with clock.stage("colour"):
         placed = voxelize.place_points(
-            scenes.union, plan.grid, colours=options.colours, fill=options.fill, geometry=options.geometry
+            scenes.union, plan.grid, colours=options.colours, fill=options.fill_per_object, geometry=options.geometry
         )
         scenes = replace(scenes, union=placed).coloured(plan.grid, colours=options.colours, geometry=options.geometry)
     result = with_view(_join_frames(files.name, frames, scenes, plan.grid, clock), options)

@@ -113,7 +113,7 @@ class Views:
     """Pictures of a scene from all around: the default view, turned about the vertical in six steps of 60 degrees."""
 
     def __init__(self, rom: Rom, threads: int = 0, *, flat: bool = False) -> None:
-        self._views = _model.FitViews(_memory(rom.octree), palette_of(rom), flat, threads)
+        self._views = _model.FitViews(_memory(rom.octree), palette_of(rom.materials), flat, threads)
 
     def likeness(self, fitted: Octree) -> tuple[float, float]:
         """Give the means over the views of the PSNR (dB) and SSIM of what is seen of `fitted`."""

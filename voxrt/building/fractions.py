@@ -139,7 +139,7 @@ def fraction_image(found: VolumeFractions, scene: Scene) -> NDArray[np.float64]:
     for number, item in enumerate(scene.objects):
         if item.name in found.without:
             continue
-        alone = voxelize(replace(scene, objects=(replace(item, rule="touch"),)), found.grid).voxels
+        alone = voxelize(replace(scene, objects=(replace(item, rule="touch", fill="solid"),)), found.grid).voxels
         whole = octree.to_dense(octree.build(alone)) != 0
         listed = found.objects == number
         places = tuple(found.voxels[listed].T)

@@ -29,9 +29,9 @@ from voxrt.options.shared import (
     Dialect,
     Engine,
 )
-from voxrt.voxelize.rules import RULES, THIN_CHOICES, Rule, Thin
+from voxrt.voxelize.rules import RULES, THIN_CHOICES, ObjectFill, Rule, Thin
 
-Fill: TypeAlias = Literal["solid", "surface", "auto", "together"]
+Fill: TypeAlias = Literal[ObjectFill, "together"]
 Geometry: TypeAlias = Literal["auto", "render", "collider"]
 Pow2: TypeAlias = Literal["box", "none"]
 UpAxis: TypeAlias = Literal["x", "y", "z"]
@@ -193,6 +193,6 @@ class BuildOptions:
         check_options(self)
 
     @property
-    def fill_per_object(self) -> Literal["solid", "surface", "auto"]:
+    def fill_per_object(self) -> ObjectFill:
         """How objects are filled, after those that are filled together became one."""
         return "auto" if self.fill == "together" else self.fill

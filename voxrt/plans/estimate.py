@@ -84,7 +84,8 @@ def estimate_build(scene: Scene, grid: Grid, options: BuildOptions) -> BuildEsti
         if len(mesh.triangles):
             low = np.minimum(low, np.minimum(np.minimum(a, b), c).min(axis=1) + item.transform[:3, 3])
             high = np.maximum(high, np.maximum(np.maximum(a, b), c).max(axis=1) + item.transform[:3, 3])
-        voxels = 1.5 * float(_largest_projections(b - a, c - a).sum()) / grid.voxel_size**2
+        shadow = float(_largest_projections(b - a, c - a).sum())
+        voxels = 1.5 * shadow / grid.voxel_size / grid.voxel_size  # its square may overflow
         triangles += len(mesh.triangles)
         surface += voxels
         ruled[item.rule or options.rule] += voxels

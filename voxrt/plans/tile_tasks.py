@@ -51,8 +51,8 @@ def scene_on_grid(scene: Scene, grid: Grid, options: BuildOptions) -> Scene:
 
     DoesNotFitError if the scene's own materials leave no id for colours.
     """
-    colours, geometry = options.colours, options.geometry
-    placed = voxelize.place_points(scene, grid, colours=colours, fill=options.fill, geometry=geometry)
+    colours, fill, geometry = options.colours, options.fill_per_object, options.geometry
+    placed = voxelize.place_points(scene, grid, colours=colours, fill=fill, geometry=geometry)
     return voxelize.assign_colours(placed, grid, colours=colours, geometry=geometry)
 
 

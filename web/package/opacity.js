@@ -11,5 +11,8 @@ export function leftOut(opacity, cutoff) {
   if (!(opacity < cutoff)) return null;
   if (opacity <= 0) return "fully transparent faces were left out";
   if (cutoff !== OPAQUE_FROM) return BELOW_THRESHOLD;
-  return `faces less opaque than ${OPAQUE_FROM} were left out: a lower --opaque-from keeps them`;
+  return (
+    `faces less opaque than ${OPAQUE_FROM} were left out: a lower --opaque-from keeps them, ` +
+    "unless their material has a threshold"
+  );
 }

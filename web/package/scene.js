@@ -19,7 +19,7 @@ export { colours } from "./three_looks.js";
 
 /** @import { BufferGeometry, InstancedMesh, Material as ThreeMaterial, Mesh as ThreeMesh, Object3D } from "three" */
 /** @import { Joined } from "./triangles.js" */
-/** @import { Mesh, Rule, Scene, SceneObject, Triple, Warning } from "./scene_format.js" */
+/** @import { Fill, Mesh, Rule, Scene, SceneObject, Triple, Warning } from "./scene_format.js" */
 /** @import { Voxrt } from "./voxrt.js" @import { Warn } from "./warnings.js" */
 
 /** A material of the scene; those of equal keys are one, and `order` sorts them. `colour` (sRGB) replaces that of
@@ -29,7 +29,7 @@ export { colours } from "./three_looks.js";
 /** How a file differs from a scene graph. `groupOf`: what makes meshes one object; `materialOf`: null for the
  * default material; `appearanceOf`: null where the colour of the material is uniform; `leavesOut`: why faces
  * of a material are left out, or null; `normalsOf`: the author's normals, for baked light. @typedef {{ groupOf: (mesh:
- * ThreeMesh) => Object3D, nameOf: (mesh: ThreeMesh, group: Object3D) => string, ruleOf: (group: Object3D) => Rule | null, materialOf: (material:
+ * ThreeMesh) => Object3D, nameOf: (mesh: ThreeMesh, group: Object3D) => string, choicesOf: (group: Object3D) => { rule?: Rule | null, fill?: Fill | null }, materialOf: (material:
  * ThreeMaterial) => Described | null | undefined, appearanceOf: (material: ThreeMaterial, geometry: BufferGeometry,
  * warn: Warn) => Look | null, leavesOut: (material: ThreeMaterial) => string | null, normalsOf: (mesh: ThreeMesh) =>
  * Attribute | null }} Rules */
@@ -40,7 +40,7 @@ export { colours } from "./three_looks.js";
   leavesOut: () => null,
   groupOf: (mesh) => mesh,
   nameOf: (mesh) => mesh.name || "mesh",
-  ruleOf: () => null,
+  choicesOf: () => ({}),
   materialOf: (material) => (material ? { key: material, name: material.name || "material" } : null),
 };
 
@@ -70,7 +70,7 @@ export function sceneOf(root, voxrt, rules = {}) {
     const placed = placesOf(parts[0]);
     for (const [i, matrix] of placed.entries()) {
       const name = all.nameOf(parts[0], group) + (placed.length > 1 ? ` [${i}]` : "");
-      objects.push({ name, mesh, transform: rows(matrix), rule: all.ruleOf(group) });
+      objects.push({ name, mesh, transform: rows(matrix), ...all.choicesOf(group) });
     }
   }
   const numbered = meshes.map(({ keys, ...mesh }) => ({ ...mesh, materials: table.idsOf(keys) }));

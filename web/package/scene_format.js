@@ -1,7 +1,7 @@
 // What Voxrt.voxelize takes and gives.
 
 /** @typedef {readonly number[]} Triple three numbers */
-/** @typedef {"surface" | "solid" | "auto"} Fill */
+/** @typedef {"solid" | "surface" | "auto"} Fill what surfaces enclose is filled or not */
 /** @typedef {"touch" | "centre" | "half"} Rule which voxels of solids are filled */
 /** @typedef {"repeat" | "mirror" | "clamp"} Wrap */
 
@@ -29,8 +29,8 @@
  * normals?: Normals }} Mesh */
 
 /** `mesh`: index into the scene's meshes; `transform`: rows of a 3 x 4 matrix to the scene frame: right-handed,
- * metres, y up; `rule`: its own one. @typedef {{ name: string, mesh: number, transform: ArrayLike<number>, rule?: Rule |
- * null }} SceneObject */
+ * metres, y up; `rule`, `fill`: its own ones. @typedef {{ name: string, mesh: number, transform: ArrayLike<number>,
+ * rule?: Rule | null, fill?: Fill | null }} SceneObject */
 
 /** @typedef {{ materials: Material[], meshes: Mesh[], objects: SceneObject[] }} Scene */
 /** @typedef {{ kind: string, message: string, count: number }} Warning */
@@ -54,7 +54,7 @@
  * Required<Material>[], objects: { name: string, mode: string, voxels: number }[], warnings: Warning[], baked:
  * Baked | null, fitted: Fitted | null }} Built */
 
-/** @type {readonly Fill[]} */ export const FILLS = ["surface", "solid", "auto"];
+/** @type {readonly Fill[]} */ export const FILLS = ["solid", "surface", "auto"];
 /** @type {readonly Rule[]} */ export const RULES = ["touch", "centre", "half"];
 export const DEPTH_LIMIT = 16;
 /** @type {readonly Wrap[]} */ export const WRAPS = ["repeat", "mirror", "clamp"];

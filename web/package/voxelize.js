@@ -69,9 +69,9 @@ function describe(voxrt, { materials, meshes, objects }, hasNormals) {
       voxrt.checked(wasm.vx_surface(list, numbers.length, ...at)),
     );
   }
-  for (const { name, mesh, transform, rule = null } of objects)
+  for (const { name, mesh, transform, rule = null, fill = null } of objects)
     voxrt.with([Float64Array, Uint8Array], [transform, textBytes(name)], (at, text) =>
-      voxrt.checked(wasm.vx_object(mesh, at, text, rule ? RULES.indexOf(rule) : -1)),
+      voxrt.checked(wasm.vx_object(mesh, at, text, rule ? RULES.indexOf(rule) : -1, fill ? FILLS.indexOf(fill) : -1)),
     );
   return voxrt.checked(wasm.vx_scene_end());
 }

@@ -34,6 +34,7 @@ export class App {
   /** @type {Source | null} */ source = null;
   /** @type {{ frame: BandFrame, samples: number } | null} the picture */ newest = null;
   /** @type {{ settle: () => Promise<void>, memoryChanged: () => void } | null} */ editing = null;
+  /** @type {{ end: () => void } | null} */ walker = null;
   /** @type {Look} */ #look = FIRST_LOOK;
 
   /** @param {WebAssembly.Module} module voxrt.wasm @param {Site} site */ constructor(module, site) {
@@ -96,6 +97,7 @@ export class App {
   }
 
   /** @param {Move} how */ glide(how) {
+    this.walker?.end();
     this.inspector.clear();
     this.viewpoint.glide(how);
   }

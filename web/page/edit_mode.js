@@ -91,6 +91,7 @@ export class EditMode {
     this.#editor?.end();
     this.#editor = null;
     this.walker.follow(null);
+    this.walker.end();
     if (this.#isOpen) this.toggle();
   }
 

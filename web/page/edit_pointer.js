@@ -4,6 +4,7 @@
 // A press that hits nothing turns the view, too.
 
 import { $ } from "./elements.js";
+import { capture } from "./gestures.js";
 /** @import { Gestures } from "./gestures.js" @import { Edited, Tool } from "./edit_worker.js" */
 
 const FIRST = 320; // milliseconds until a held button repeats
@@ -75,10 +76,10 @@ export class EditPointer {
       this.actions.take(place);
     } else if (event.button === 1) {
       this.#middle = place;
-    } else if (!event.shiftKey && !event.ctrlKey && !event.metaKey) {
-      event.stopPropagation();
+    } else if (this.actions.locked() || (!event.shiftKey && !event.ctrlKey && !event.metaKey)) {
+      event.stopPropagation(); // Shift runs, where the mouse is locked
       $("picture").focus();
-      $("picture").setPointerCapture(event.pointerId);
+      capture($("picture"), event.pointerId);
       this.#begin(event, tool);
     }
   }

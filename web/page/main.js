@@ -126,7 +126,8 @@ function steer(app) {
   };
   $("frame").onclick = commands.KeyF;
   const { gestures, flight } = makePilot(app, canvas, commands, (x, y) => {
-    if (!isPressed($("inspect")) && !document.body.classList.contains("editing")) app.focusAt(x, y);
+    if (!isPressed($("inspect")) && !isPressed($("walk")) && !document.body.classList.contains("editing"))
+      app.focusAt(x, y);
   });
   /** @type {Walker | null} */ let walker = null;
   const load = once(async () => {

@@ -7,7 +7,7 @@ import { MeshoptDecoder } from "./three/addons/libs/meshopt_decoder.module.js";
 import { GLTFLoader } from "./three/addons/loaders/GLTFLoader.js";
 import { LoadingManager, Texture } from "./three/three.core.js";
 import { sceneOf } from "./voxrt/scene.js";
-import { RULES } from "./voxrt/voxrt.js";
+import { FILLS, RULES } from "./voxrt/voxrt.js";
 /** @import { Material, Object3D } from "three" @import { Reader } from "./files.js" */
 /** @import { DroppedFile, Folder } from "./folder.js" @import { GltfParser } from "./gltf_looks.js" */
 
@@ -36,7 +36,10 @@ import { RULES } from "./voxrt/voxrt.js";
       const name = nameOf(group);
       return (counts.get(name) ?? 0) > 1 ? `${name} (nodes[${place(group, "nodes")}])` : name;
     },
-    ruleOf: (group) => ruleOf(json.nodes?.[place(group, "nodes") ?? -1]?.extras?.voxrt_rule),
+    choicesOf: (group) => {
+      const { voxrt_rule: rule, voxrt_fill: fill } = json.nodes?.[place(group, "nodes") ?? -1]?.extras ?? {};
+      return { rule: oneOf(RULES, "rule", rule), fill: oneOf(FILLS, "fill", fill) };
+    },
     materialOf: (material) => {
       const index = place(material, "materials");
       if (index === undefined) return null;
@@ -54,10 +57,11 @@ import { RULES } from "./voxrt/voxrt.js";
   return scene;
 }
 
-/** @param {unknown} rule */ function ruleOf(rule) {
-  const known = RULES.find((one) => one === rule) ?? null;
-  if (rule !== undefined && !known)
-    throw new FileError(`${JSON.stringify(rule)} is no rule; name one of ${RULES.join(", ")}`);
+/** @template {string} T @param {readonly T[]} choices @param {string} name @param {unknown} value */
+function oneOf(choices, name, value) {
+  const known = choices.find((one) => one === value) ?? null;
+  if (value !== undefined && !known)
+    throw new FileError(`${JSON.stringify(value)} is no ${name}; name one of ${choices.join(", ")}`);
   return known;
 }
 

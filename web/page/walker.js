@@ -12,6 +12,7 @@ import { bodyBox, bodyFor, eyeOf, roomAbove, step } from "./walk.js";
 
 const FIELD_OF_VIEW = 60;
 const RUN = 1.8; // times the pace
+const TURN = 0.0022; // radians per pixel of a locked mouse, whatever the size of the picture
 const UPWARDS = 1; // the axis
 const ROWS = [0.7, 0.65, 0.75, 0.6, 0.8, 0.55, 0.85, 0.5, 0.4, 0.3]; // parts of the picture's height
 const REACH = 6; // heights of the eye to what the camera orbits later
@@ -20,25 +21,29 @@ export class Walker {
   /** @type {{ walk: Walk, body: Body, fov: number } | null} */ #state = null;
   /** @type {Editor | null} */ #editor = null;
   #last = 0;
+  #hasLocked = false;
   #lockFails = !matchMedia("(pointer: fine)").matches;
 
   /** @param {App} app @param {Flight} flight */ constructor(app, flight) {
     this.app = app;
     this.flight = flight;
+    app.walker = this;
     const canvas = $("picture");
     canvas.addEventListener("click", async () => {
       if (!this.takesPress()) return;
       try {
         await canvas.requestPointerLock();
       } catch {
-        this.#lockFails = true;
+        this.#lockFails = !this.#hasLocked; // a moment after Escape it does, too
       }
     });
-    document.addEventListener("pointerlockchange", () => document.body.classList.toggle("locked", this.locked));
+    document.addEventListener("pointerlockchange", () => {
+      this.#hasLocked ||= this.locked;
+      document.body.classList.toggle("locked", this.locked);
+    });
     document.addEventListener("mousemove", ({ movementX, movementY }) => {
       if (!this.locked || !this.#state) return;
-      const angle = ((this.app.view()?.fov ?? 1) * Math.PI) / 180 / canvas.clientHeight;
-      this.app.change((now) => look(now, movementX * angle, -movementY * angle));
+      this.app.change((now) => look(now, movementX * TURN, -movementY * TURN));
     });
   }
 
@@ -81,7 +86,7 @@ export class Walker {
     if (!place || this.app.memory() !== memory) return;
     setMode("walk");
     $("picture").focus();
-    this.#state = { walk: { place, rise: 0, stands: false, lag: 0 }, body, fov: pose.fov };
+    this.#state = { walk: { place, rise: 0, stands: false, lag: 0 }, body, fov: this.#state?.fov ?? pose.fov };
     this.#last = performance.now();
     const eye = eyeOf(this.#state.walk, body);
     this.app.change((now) => ({ ...now, eye, pitch: now.pitch / 4, fov: FIELD_OF_VIEW, distance: REACH * body.eye }));
@@ -128,7 +133,7 @@ export class Walker {
     if (eye.some((part, axis) => Math.abs(part - before[axis]) > 1e-4)) this.app.change((pose) => ({ ...pose, eye }));
   }
 
-  /** Another way of moving begins. */
+  /** Another way of moving begins, or another memory comes. */
   end() {
     if (!this.#state) return;
     const { fov } = this.#state;

@@ -53,6 +53,7 @@ struct Object {
     std::array<double, 12> transform;
     std::string name;
     int rule; // 0 touch, 1 centre, 2 half, -1 that of the build
+    int fill; // 0 solid, 1 surface, 2 auto, -1 that of the build
 };
 
 struct Scene {

@@ -44,8 +44,11 @@ voxelize::FittedGrid fitted(unsigned depth) {
     return voxelize::fit_grid(bounds.low(), bounds.high(), depth);
 }
 
-voxelize::Fill fill_of(int fill) {
-    return fill == 0 ? voxelize::Fill::surface : fill == 1 ? voxelize::Fill::solid : voxelize::Fill::automatic;
+/// Refuses a choice that is not one of three.
+void check_choice(const char* name, int choice, int lowest) {
+    if (choice < lowest || choice > 2)
+        throw std::invalid_argument(std::string("the ") + name + (lowest < 0 ? " of an object" : "") + " must be " +
+                                    (lowest < 0 ? "-1, " : "") + "0, 1 or 2");
 }
 
 /// Leaves out triangles without a material.
@@ -243,14 +246,14 @@ EXPORT(vx_normals) int vx_normals(const double* directions, size_t count, const 
 }
 
 /// Places a mesh. `transform`: rows of 3x4, to the scene frame in metres, y up. `name`: UTF-8. `rule`: 0 touch, 1
-/// centre, 2 half, -1 that of vx_voxelize.
-EXPORT(vx_object) int vx_object(int mesh, const double* transform, const char* name, int rule) {
+/// centre, 2 half; `fill`: 0 solid, 1 surface, 2 auto; -1: that of vx_voxelize.
+EXPORT(vx_object) int vx_object(int mesh, const double* transform, const char* name, int rule, int fill) {
     return guarded([&] {
         if (mesh < 0 || static_cast<size_t>(mesh) >= scene.meshes.size())
             throw std::invalid_argument("there is no mesh " + std::to_string(mesh));
-        if (rule < -1 || rule > 2)
-            throw std::invalid_argument("the rule of an object must be -1, 0, 1 or 2");
-        Object object{static_cast<size_t>(mesh), {}, name, rule};
+        check_choice("rule", rule, -1);
+        check_choice("fill", fill, -1);
+        Object object{static_cast<size_t>(mesh), {}, name, rule, fill};
         std::copy_n(transform, 12, object.transform.begin());
         scene.objects.push_back(std::move(object));
         return static_cast<int>(scene.objects.size() - 1);
@@ -288,14 +291,14 @@ EXPORT(vx_scene_end) double vx_scene_end() {
     });
 }
 
-/// Voxelizes the scene and builds its octree; returns 0. `fill`: 0 surface, 1 solid, 2 auto. `rule`: 0 touch, 1 centre,
+/// Voxelizes the scene and builds its octree; returns 0. `fill`: 0 solid, 1 surface, 2 auto. `rule`: 0 touch, 1 centre,
 /// 2 half. `colours`: 1 … 254.
 EXPORT(vx_voxelize) int vx_voxelize(int depth, int fill, int rule, int colours) {
     return guarded([&] {
         if (depth < 1 || depth > 16)
             throw std::invalid_argument("depth must be 1 … 16");
-        if (rule < 0 || rule > 2)
-            throw std::invalid_argument("the rule must be 0, 1 or 2");
+        check_choice("rule", rule, 0);
+        check_choice("fill", fill, 0);
         if (colours < 1 || colours > 254)
             throw std::invalid_argument("colours must be 1 … 254");
         result = {};
@@ -311,13 +314,15 @@ EXPORT(vx_voxelize) int vx_voxelize(int depth, int fill, int rule, int colours) 
         std::deque<std::array<double, 12>> frames;
         std::vector<voxelize::PartView> parts;
         for (size_t i = 0; i < scene.objects.size(); ++i) {
-            const PlacedMesh& mesh = meshes[scene.objects[i].mesh];
-            frames.push_back(result.grid.frame(scene.objects[i].transform));
-            const int own = scene.objects[i].rule;
+            const Object& object = scene.objects[i];
+            const PlacedMesh& mesh = meshes[object.mesh];
+            frames.push_back(result.grid.frame(object.transform));
             parts.push_back({voxelize::PartKind::mesh, &mesh.view, frames.back().data(), mesh.only_material,
-                             static_cast<uint32_t>(i), static_cast<voxelize::Rule>(own < 0 ? rule : own)});
+                             static_cast<uint32_t>(i),
+                             static_cast<voxelize::Rule>(object.rule < 0 ? rule : object.rule),
+                             static_cast<voxelize::Fill>(object.fill < 0 ? fill : object.fill)});
         }
-        const voxelize::SparseVoxels voxels = voxelize::voxelize(depth, parts, scene.objects.size(), fill_of(fill), 1);
+        const voxelize::SparseVoxels voxels = voxelize::voxelize(depth, parts, scene.objects.size(), 1);
         report(voxels);
         result.words = octree::build(voxels.view(), 1);
         return 0;

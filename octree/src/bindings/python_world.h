@@ -9,7 +9,8 @@ namespace voxrt::octree {
 
 class PythonWorld {
 public:
-    PythonWorld(const Memory& memory, const WorldLimits& limits) : world_(memory, limits) {}
+    PythonWorld(const Memory& memory, const WorldLimits& limits, std::optional<std::size_t> place)
+        : world_(memory, limits, place) {}
 
     /// Calls `work` with the world. The caller has released the GIL.
     template <typename Work> auto with(Work work) {

@@ -24,9 +24,11 @@ template <typename Work> auto with(PythonWorld& world, Work work) {
     return run([&] { return world.with(work); });
 }
 
-PythonWorld* make_world(const Vector<Word>& words, unsigned depth, std::size_t most_words, std::size_t undo_steps) {
+PythonWorld* make_world(const Vector<Word>& words, unsigned depth, std::size_t most_words, std::size_t undo_steps,
+                        std::optional<std::size_t> root) {
     const Memory memory = memory_of(words, depth);
-    return run([&] { return new PythonWorld(memory, WorldLimits{most_words, undo_steps}); });
+    require(!root || (*root < memory.size && memory.words[*root] == memory.root()), "the root is not that of word 0");
+    return run([&] { return new PythonWorld(memory, WorldLimits{most_words, undo_steps}, root); });
 }
 
 void require_reach(std::initializer_list<const Place*> places, std::int64_t reach) {
@@ -144,7 +146,8 @@ void bind_world(nb::module_& m) {
     patch_type = NamedTuple(m, "Patch", {"root", "root_word", "addresses", "blocks"}, "What World.commit() returns.");
     figures_type = NamedTuple(m, "WorldFigures", {"blocks", "kept", "free"}, "What World.figures() returns.");
     nb::class_<PythonWorld>(m, "World")
-        .def(nb::new_(&make_world), "words"_a.noconvert(), "depth"_a, "most_words"_a, "undo_steps"_a)
+        .def(nb::new_(&make_world), "words"_a.noconvert(), "depth"_a, "most_words"_a, "undo_steps"_a,
+             "root"_a = nb::none())
         .def("set", &bind_set, "points"_a.noconvert(), "materials"_a.noconvert())
         .def("change_box", &bind_change_box, "low"_a, "high"_a, "material"_a, "solid_only"_a)
         .def("change_ball", &bind_change_ball, "centre"_a, "radius"_a, "material"_a, "solid_only"_a)

@@ -6,7 +6,7 @@
 
 namespace voxrt::octree {
 
-bool CountedBlocks::load(const Memory& memory) {
+bool CountedBlocks::load(const Memory& memory, std::optional<std::size_t> place) {
     const std::size_t blocks = block_count(memory.size);
     counts_.clear();
     free_.clear();
@@ -23,8 +23,14 @@ bool CountedBlocks::load(const Memory& memory) {
     retain(memory.root());
     if (!take_over(memory.root()))
         return false;
+    if (place.value_or(0) != 0) // no block that is reached has the word that leads to all of them
+        counts_[block_number(static_cast<Word>(*place - 1))] = 1;
     for (std::size_t number = 0; number < blocks; ++number)
-        if (counts_[number] == 0) {
+        if (counts_[number] == 0 && place) {
+            counts_[number] = kFree;
+            written_[number] = 0;
+            free_.push_back(static_cast<Word>(number));
+        } else if (counts_[number] == 0) {
             kept_.push_back(static_cast<Word>(block_address(number)));
             retain(kept_.back());
             if (!take_over(kept_.back()))

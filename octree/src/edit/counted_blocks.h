@@ -15,6 +15,7 @@
 #include <voxrt/voxelize/work/mutex.h>
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace voxrt::octree {
@@ -27,7 +28,10 @@ public:
     /// Takes over the blocks of `memory`, each at its address. Its root is counted once. So are blocks that the root
     /// does not reach, for good: other roots may reach them, as those of an animation. The memory is verified. False
     /// where it is not canonical, since blocks are equal or uniform: then load another.
-    bool load(const Memory& memory);
+    ///
+    /// With the place of another word that is the root, blocks that it does not reach are free. The block of the place
+    /// becomes a table, as add_table() makes it; place 0 is in none.
+    bool load(const Memory& memory, std::optional<std::size_t> place = {});
 
     /// The most blocks from now on.
     void set_limit(std::size_t blocks) { limit_ = blocks; }

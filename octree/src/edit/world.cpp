@@ -47,20 +47,24 @@ struct Settling {
 
 } // namespace
 
-World::World(const Memory& memory, const WorldLimits& limits)
+World::World(const Memory& memory, const WorldLimits& limits, std::optional<std::size_t> place)
     : depth_(memory.depth), limits_(limits), history_(blocks_, limits.undo_steps) {
     const VerifiedMemory verified(memory);
     Words shared;
-    if (!blocks_.load(memory)) {
+    if (!blocks_.load(memory, place)) {
         shared = coarsened(memory, 0);
         blocks_.load({shared.data(), shared.size(), depth_});
+        place.reset();
     }
     root_ = shared.empty() ? memory.root() : shared[0];
     if (memory_size(blocks_.size()) > limits.words)
         throw std::length_error("the octree has " + std::to_string(memory_size(blocks_.size())) +
                                 " words, and its memory would have " + std::to_string(limits.words));
     blocks_.set_limit(std::min(blocks_in(limits.words), kBlockLimit));
-    roots_->add({0, root_});
+    const std::size_t root_place = place.value_or(0);
+    if (root_place != 0)
+        add_places(block_address(block_number(static_cast<Word>(root_place - 1))), root_place);
+    roots_->add({root_place, root_});
     blocks_.retain(root_);
 }
 
@@ -284,9 +288,16 @@ void World::reserve_place(Word root) {
         return;
     tables_.reserve(tables_.size() + 1);
     free_places_.reserve(8 * (tables_.size() + 1)); // for free_ended(), too
-    tables_.push_back(blocks_.add_table());
-    for (std::size_t place = tables_.back() + 8; place-- > tables_.back();)
-        free_places_.push_back(place);
+    add_places(blocks_.add_table(), 0);
+}
+
+// Adds the words of a table but for the one that is used.
+void World::add_places(std::size_t table, std::size_t used) {
+    tables_.push_back(table);
+    free_places_.reserve(8 * tables_.size());
+    for (std::size_t place = table + 8; place-- > table;)
+        if (place != used)
+            free_places_.push_back(place);
 }
 
 std::vector<std::uint8_t> World::reached(const std::vector<Word>& roots) const {

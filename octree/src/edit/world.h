@@ -66,7 +66,10 @@ public:
     /// equal blocks are shared first, and image() is the memory to begin with. Blocks of other roots stay as they are,
     /// where the memory is canonical. Throws std::invalid_argument as VerifiedMemory does, std::length_error where it
     /// is larger than the limit.
-    explicit World(const Memory& memory, const WorldLimits& limits = {});
+    ///
+    /// With the place of a root, which has the same word as word 0, that word is the live root where the memory is
+    /// canonical, and the blocks that it does not reach are free.
+    explicit World(const Memory& memory, const WorldLimits& limits = {}, std::optional<std::size_t> place = {});
 
     unsigned depth() const { return depth_; }
 
@@ -142,6 +145,7 @@ private:
     std::vector<Word> needed_roots() const;
     std::optional<bool> turn(bool undone);
     void reserve_place(Word root);
+    void add_places(std::size_t table, std::size_t used);
     void free_ended();
 
     unsigned depth_;

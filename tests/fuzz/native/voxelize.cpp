@@ -108,7 +108,6 @@ void fuzz_one(std::span<const uint8_t> data) {
     FuzzBytes bytes(data);
     const unsigned size = bytes.upto(31);
     const int depth = size == 0 ? 6 : size == 1 ? 5 : 1 + int(size % 4); // most grids are small, for speed
-    const Fill fill = static_cast<Fill>(bytes.upto(2));
     const bool twice = bytes.upto(31) == 0;
     const Thin thin = Thin(bytes.upto(1));
     std::vector<FuzzMesh> meshes;
@@ -128,12 +127,12 @@ void fuzz_one(std::span<const uint8_t> data) {
     for (size_t p = 0; p < kinds.size(); ++p) {
         const MeshView* view = kinds[p] == PartKind::mesh ? &views[bytes.upto(255) % views.size()] : nullptr;
         parts.push_back({kinds[p], view, frames[p].data(), uint8_t(view ? bytes.upto(2) : 1 + bytes.upto(2)), object,
-                         Rule(bytes.upto(2))});
+                         Rule(bytes.upto(2)), Fill(bytes.upto(2))});
         object += bytes.upto(1);
     }
     try {
-        const uint64_t alone = fingerprint(voxelize(depth, parts, object + 1, fill, 1, thin));
-        if (twice && alone != fingerprint(voxelize(depth, parts, object + 1, fill, 2, thin)))
+        const uint64_t alone = fingerprint(voxelize(depth, parts, object + 1, 1, thin));
+        if (twice && alone != fingerprint(voxelize(depth, parts, object + 1, 2, thin)))
             fuzz_fail("the result depends on the number of threads");
         std::vector<Vertex> points;
         for (const double value : meshes[0].positions)

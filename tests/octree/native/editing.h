@@ -42,7 +42,7 @@ public:
     Editing(Choose choose, Fail fail, unsigned depth, const WorldLimits& limits)
         : choose_(std::move(choose)), fail_(std::move(fail)), depth_(depth), side_(std::int64_t{1} << depth),
           cells_(static_cast<std::size_t>(side_ * side_ * side_)), world_(world_of(cells_, depth, limits)),
-          device_(world_->image()), most_steps_(limits.undo_steps), begin_(cells_) {
+          device_(world_->image()), limits_(limits), begin_(cells_) {
         live_[0] = cells_;
     }
 
@@ -118,8 +118,9 @@ private:
         std::size_t steps = 0;
         for (std::uint32_t author = 0; author < kAuthors; ++author)
             steps += world_->undo_steps(author) + world_->redo_steps(author);
-        const bool forgotten = steps == std::min<std::size_t>(1, most_steps_); // the edit needed the room of the others
-        for (const std::size_t most = forgotten ? steps : most_steps_; history_.size() > most;) {
+        const bool forgotten =
+            steps == std::min<std::size_t>(1, limits_.undo_steps); // the edit needed the room of the others
+        for (const std::size_t most = forgotten ? steps : limits_.undo_steps; history_.size() > most;) {
             make_again(begin_, history_.front());
             history_.erase(history_.begin());
         }
@@ -256,6 +257,20 @@ private:
             if (wrong_)
                 fail_("a thread reads other voxels");
         }
+        if (choose_(8) == 0)
+            take_over(patch.root);
+    }
+
+    // Another world goes on with the memory as it is, and reads none of what is free.
+    void take_over(std::size_t root) {
+        Words words = device_;
+        words[0] = words[root];
+        world_ = std::make_unique<World>(Memory{words.data(), words.size(), depth_}, limits_, root);
+        if (world_->live_roots().back().address != root || world_->image() != words)
+            fail_("another world has other words");
+        live_ = {{root, cells_}};
+        begin_ = cells_;
+        history_.clear();
     }
 
     Choose choose_;
@@ -270,7 +285,7 @@ private:
     std::atomic<bool> wrong_{false};
     bool refused_ = false, turned_ = false;
     std::uint32_t author_ = 0;
-    std::size_t most_steps_;
+    WorldLimits limits_;
     Cells begin_; // before the first edit of history_
     std::vector<Made> history_;
 };

@@ -57,8 +57,10 @@ def test_3mf_has_units_components_and_colours(unit, metres, tmp_path):
     np.testing.assert_allclose(high, np.array([55, 20, 10]) * metres)
     assert len(scene.objects) == 2
     assert scene.objects[0].mesh is scene.objects[1].mesh
-    corners = scene.objects[0].mesh.appearance.colours[:, 0, :3]
-    assert corners.tolist() == [[0, 1, 0]] * 2 + [[0, 0, 1]] * 4 + [[1, 0, 0]] * 6
+    mesh = scene.objects[0].mesh
+    shown = [scene.materials[number].colour for number in mesh.materials]
+    assert shown == [(0, 255, 0)] * 2 + [(0, 0, 255)] * 4 + [(255, 0, 0)] * 6
+    assert [one.name for one in scene.materials[1:3]] == ["red", "blue"]
 
 
 def test_a_3mf_of_another_program(tmp_path):
@@ -169,3 +171,39 @@ def test_a_3mf_that_unpacks_to_far_more_than_its_size_is_refused(tmp_path):
         archive.writestr("3D/3dmodel.model", " " * (80 << 20))
     with pytest.raises(AssetError, match="unpacks to more than 68 MiB"):
         load(tmp_path / "a.3mf")
+
+
+def test_3mf_has_opacity(tmp_path):
+    glass = model_of_a_box("").replace("#FF0000", "#FF000066")
+    path = write_3mf(tmp_path / "a.3mf", glass)
+    assert kinds(load(path))["transparent"] == 6
+    assert "transparent" not in kinds(load(path, opaque_from=0.4))
+    everything = glass.replace("#00FF00", "#00FF0011").replace("#0000FFFF", "#0000FF00")
+    with pytest.raises(AssetError, match=r"shows nothing: (faces less opaque|fully transparent)"):
+        load(write_3mf(tmp_path / "b.3mf", everything))
+
+
+@pytest.mark.parametrize(
+    ("of_file", "wrong"), [('p1="1"', 'p1="9"'), ('pid="5" p1="1"', 'pid="7" p1="1"'), ("#0000FFFF", "blue")]
+)
+def test_colours_that_a_3mf_lacks_are_counted(of_file, wrong, tmp_path):
+    model = model_of_a_box("").replace(of_file, wrong)
+    scene = load(write_3mf(tmp_path / "a.3mf", model))
+    assert kinds(scene)["material-colour"] == 4
+
+
+@pytest.mark.parametrize(
+    ("emission", "diffuse", "right"),
+    [("1 0 0.2 1", "0 0 0 1", (255, 0, 51)), ("1 0 0 1", "0 1 0 1", (0, 255, 0)), ("0 0 0 1", "0 0 0 1", (0, 0, 0))],
+)
+def test_a_collada_material_that_only_emits_shows_its_emission(emission, diffuse, right, tmp_path):
+    box = BOX.copy()
+    box.visual.face_colors = (200, 30, 30, 255)
+    text = re.sub(
+        r"<diffuse>.*?</diffuse>",
+        f"<emission><color>{emission}</color></emission><diffuse><color>{diffuse}</color></diffuse>",
+        re.sub(r"<emission>.*?</emission>", "", box.export(file_type="dae").decode(), flags=re.DOTALL),
+        flags=re.DOTALL,
+    )
+    (tmp_path / "a.dae").write_text(text)
+    assert load(tmp_path / "a.dae").materials[1].colour == right

@@ -16,7 +16,7 @@ from voxrt.voxelize.authoring.scene_toml.validation import CheckedFile, check_fi
 from voxrt.voxelize.authoring.solid import Solid
 from voxrt.voxelize.authoring.transforms import placement
 from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.formats.external_files import ALLOW_OUTSIDE, ExternalFiles, asset_name
+from voxrt.voxelize.formats.external_files import ALLOW_OUTSIDE, ExternalFiles, asset_name, read_asset
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -53,9 +53,7 @@ def load_scene_toml(
     """
     path = Path(path)
     try:
-        text = path.read_text(encoding="utf-8-sig")  # some editors begin a file with a mark
-    except OSError as error:
-        raise AssetError(path, f"cannot be read: {error.strerror}", fix="check the path and its permissions") from None
+        text = read_asset(path).decode("utf-8-sig")  # some editors begin a file with a mark
     except UnicodeDecodeError:
         raise AssetError(path, "is not UTF-8 text", fix="save it as UTF-8") from None
     for_assets: dict[str, Any] = {"opaque_from": opaque_from, "points": points}
@@ -105,7 +103,7 @@ class _Builder:
         name = self._unique(prefix + (node.name or f"{shape} {int(where[-1]) + 1}"))
         material = node.material or material
         if node.group is not None:
-            for key in ("collider", "rule"):
+            for key in ("collider", "rule", "fill"):
                 if getattr(node, key) is not None:
                     raise self._checked.error((*where, key), f"a group cannot have a {key}", "put it on its objects")
             for index, one in enumerate(node.group):
@@ -125,6 +123,7 @@ class _Builder:
                     collider=node.collider,
                     pow2=node.pow2,
                     rule=node.rule,
+                    fill=node.fill,
                 )
                 return
             self._author.add_transformed(
@@ -135,6 +134,7 @@ class _Builder:
                 collider=node.collider,
                 pow2=node.pow2,
                 rule=node.rule,
+                fill=node.fill,
             )
         except ValueError as error:
             raise self._checked.error((*where, shape), str(error), "correct the object") from None
@@ -178,7 +178,7 @@ class _Builder:
         if shape == "group":
             raise self._checked.error((*where, "group"), "a group is not a solid", "use union")
         for index, one in enumerate(getattr(node, shape)):
-            for key in ("collider", "name", "rule"):
+            for key in ("collider", "name", "rule", "fill"):
                 if getattr(one, key) is not None:
                     problem = f"a part of a {shape} cannot have a {key}"
                     raise self._checked.error((*where, shape, index, key), problem, "put it on the whole")

@@ -9,7 +9,7 @@ from msgspec import Meta, Struct
 from voxrt.voxelize.authoring.solid import Axis  # noqa: TC001 -- msgspec reads the annotations
 from voxrt.voxelize.authoring.transforms import FARTHEST
 from voxrt.voxelize.collider_shapes import ColliderKind  # noqa: TC001 -- msgspec reads the annotations
-from voxrt.voxelize.rules import Rule  # noqa: TC001
+from voxrt.voxelize.rules import ObjectFill, Rule  # noqa: TC001
 
 Number: TypeAlias = Annotated[float, Meta(ge=-FARTHEST, le=FARTHEST)]
 Point: TypeAlias = tuple[Number, Number, Number]
@@ -126,6 +126,8 @@ class Node(_Table, frozen=True, kw_only=True):
         The collider to voxelize in its place, and whether a box is rounded up to powers of two voxels.
     rule
         Which voxels it fills: ``touch``, ``centre`` or ``half``.
+    fill
+        Whether what it encloses is filled: ``solid``, ``surface`` or ``auto``.
     """
 
     name: str | None = None
@@ -147,6 +149,7 @@ class Node(_Table, frozen=True, kw_only=True):
     collider: ColliderKind | None = None
     pow2: bool = True
     rule: Rule | None = None
+    fill: ObjectFill | None = None
 
 
 SHAPES = (

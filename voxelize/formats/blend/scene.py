@@ -130,13 +130,25 @@ class SceneReader:
             objects.append(self._object(called, one, mesh))
         objects += self._hidden(depsgraph)
         if not objects:
-            raise AssetError(self._path, "has no triangles to voxelize", fix="check that renders show a mesh")
+            raise self._nothing_shown(depsgraph.scene)
         materials = self._table.materials()
         sky = read_daylight(depsgraph).sky
         if sky is not None:
             materials = (Material(materials[0].name, sky), *materials[1:])
         viewpoint = cameras[0] if cameras else None
         return Scene(name, tuple(objects), materials, self._log.warnings(), viewpoint=viewpoint, cameras=cameras)
+
+    def _nothing_shown(self, scene: Any) -> AssetError:
+        """Return the error for a scene without triangles; it says what the scene has instead."""
+        kinds = Counter(one.type.replace("GREASEPENCIL", "grease pencil").lower() for one in scene.objects)
+        has = ", ".join(f"{count} {kind}" for kind, count in sorted(kinds.items())) or "no objects"
+        meshes = sum(one.type == "MESH" and one.hide_render for one in scene.objects)
+        fix = (
+            f"show a mesh in renders: hidden from them are {meshes}"
+            if meshes
+            else "check that renders of that scene show a mesh"
+        )
+        return AssetError(self._path, f"has no triangles to voxelize: the scene {scene.name!r} has {has}", fix=fix)
 
     def _hidden(self, depsgraph: Any) -> list[SceneObject]:
         """Return the rigid bodies that renders do not show, as colliders without a mesh; modifiers do not count."""
@@ -146,6 +158,9 @@ class SceneReader:
         for one in depsgraph.view_layer.objects:
             if one.type != "MESH" or one.rigid_body is None or not one.hide_render or not len(one.data.polygons):
                 continue
+            authored = self._properties(one)
+            if authored is None:
+                continue
             collider = rigid_collider(one.rigid_body, read_triangles(one.data), self._log)
             if collider is not None:
                 material = self._materials.of(one.active_material)
@@ -153,7 +168,13 @@ class SceneReader:
                 transform = placed(one.matrix_world)
                 found.append(
                     SceneObject(
-                        one.name, transform=transform, colliders=(collider,), collider_material=number, hidden=True
+                        one.name,
+                        transform=transform,
+                        colliders=(collider,),
+                        collider_material=number,
+                        hidden=True,
+                        rule=authored.voxrt_rule,
+                        fill=authored.voxrt_fill,
                     )
                 )
         self._log.add("collider", "colliders that are not shown count with geometry collider alone", len(found))
@@ -189,7 +210,8 @@ class SceneReader:
         if collider is not None and (mesh.materials != material).any():
             self._log.add("collider-material", "colliders of objects with several materials took the first of them")
         colliders = () if collider is None else (collider,)
-        return SceneObject(name, mesh, one.transform, colliders, material, rule=one.properties.voxrt_rule)
+        rule, fill = one.properties.voxrt_rule, one.properties.voxrt_fill
+        return SceneObject(name, mesh, one.transform, colliders, material, rule=rule, fill=fill)
 
     def _error(self, place: str, problem: str, fix: str) -> AssetError:
         return AssetError(self._path, problem, place=place, fix=fix)
@@ -205,19 +227,14 @@ class SceneReader:
         name = one.name
         if instance.is_instance and instance.parent is not None and instance.parent.name != name:
             name = f"{instance.parent.name}/{name}"
-        place = f"object {one.name!r}"
-        properties = checked_properties(
-            {key: one[key] for key in one.keys() if key.startswith(PREFIX)},  # noqa: SIM118 - not a dict
-            ObjectProperties,
-            place,
-            self._error,
-        )
-        if properties.voxrt_ignore:
-            self._log.add("ignored", "objects with voxrt_ignore were left out")
+        properties = self._properties(one)
+        if properties is None:
             return None
         transform = placed(instance.matrix_world)
         if not np.isfinite(transform).all():
-            raise self._error(place, "the transform is not finite", "clear its scale and its constraints")
+            raise self._error(
+                f"object {one.name!r}", "the transform is not finite", "clear its scale and its constraints"
+            )
         key = one.data.as_pointer()
         if key not in self._arrays:
             self._arrays[key] = read_triangles(one.data)
@@ -230,6 +247,19 @@ class SceneReader:
                 self._colliders[shape] = rigid_collider(one.rigid_body, arrays, self._log)
             collider = self._colliders[shape]
         return _Placed(name, row, transform, properties, collider)
+
+    def _properties(self, one: Any) -> ObjectProperties | None:
+        """Return what an object says to voxrt; None where that is to leave it out."""
+        authored = checked_properties(
+            {key: one[key] for key in one.keys() if key.startswith(PREFIX)},  # noqa: SIM118 - not a dict
+            ObjectProperties,
+            f"object {one.name!r}",
+            self._error,
+        )
+        if not authored.voxrt_ignore:
+            return authored
+        self._log.add("ignored", "objects with voxrt_ignore were left out")
+        return None
 
     def _mesh(self, one: Any, key: int, arrays: MeshArrays, properties: ObjectProperties) -> int:
         """Return the row of an object's mesh with the materials of its slots."""

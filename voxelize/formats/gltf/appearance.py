@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
+from voxrt.voxelize.formats.colour_range import CLAMPED, clamped
 from voxrt.voxelize.formats.gltf.accessors import as_unit_floats
 from voxrt.voxelize.formats.gltf.extensions import TEXTURE_TRANSFORM, VARIANTS
 from voxrt.voxelize.formats.gltf.materials import NO_MATERIAL, MaterialKey, MaterialProperties, material_properties
@@ -75,6 +76,8 @@ def read_appearance(
         key = MaterialKey(_material(document, appearance_key, span, place), appearance_key.mirrored)
         properties = material_properties(document, key)
         faces = span.stop - span.start
+        if properties.is_clamped:
+            document.log.add("colour-range", CLAMPED, faces)
         if not faces or builder.add(span, key, properties):
             continue
         if properties.factor[3] < properties.cutoff:
@@ -161,7 +164,7 @@ class _AppearanceBuilder:
         self._fits(span, colours, "COLOR_0")
         if colours.shape[1] == 3:
             colours = np.column_stack([colours, np.ones(len(colours))])
-        colours = np.clip(colours, 0.0, 1.0)
+        colours = clamped(colours, self._document.log)
         return None if (colours == 1.0).all() else colours
 
     def _coordinates(self, span: Span, properties: MaterialProperties) -> NDArray[np.float64] | None:

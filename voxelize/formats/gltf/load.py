@@ -159,4 +159,4 @@ def _objects(
         raise document.error(f"nodes[{content.node}]", "the transform overflows")
     for at, transform in enumerate(content.transforms):
         own = name if len(content.transforms) == 1 else f"{name} [{at}]"
-        yield SceneObject(own, mesh, transform, colliders, material, rule=content.rule)
+        yield SceneObject(own, mesh, transform, colliders, material, rule=content.rule, fill=content.fill)

@@ -43,6 +43,7 @@ class MaterialProperties:
     place: str = ""
     cutoff: float = 0.0  # the surface is cut away where its alpha is below this; 0 for opaque surfaces
     mirror: bool = False
+    is_clamped: bool = False  # the file's factor is not within 0 … 1
 
 
 def material_properties(document: Document, key: MaterialKey) -> MaterialProperties:
@@ -69,6 +70,7 @@ def material_properties(document: Document, key: MaterialKey) -> MaterialPropert
         place=f"{place}.{where}",
         cutoff={"OPAQUE": 0.0, "MASK": material.alpha_cutoff, "BLEND": document.opaque_from}[material.alpha_mode],
         mirror=key.mirrored or bool(authored.voxrt_reflect),
+        is_clamped=(red, green, blue, alpha) != tuple(factor),
     )
 
 

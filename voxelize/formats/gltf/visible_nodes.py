@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.formats.gltf.document import Document
     from voxrt.voxelize.formats.gltf.meshes import Surface
     from voxrt.voxelize.formats.gltf.nodes import Hierarchy
-    from voxrt.voxelize.rules import Rule
+    from voxrt.voxelize.rules import ObjectFill, Rule
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +49,7 @@ class NodeContent:
     collider: Collider | None  # the node's own collider, in its frame, or None
     transforms: NDArray[np.float64]  # float64, shape (N, 4, 4): to the scene frame, one per instance
     rule: Rule | None = None  # which voxels it fills, or None for what the build says
+    fill: ObjectFill | None = None  # whether what it encloses is filled, or None for what the build says
 
 
 class VisibleNodes:
@@ -82,11 +83,12 @@ class VisibleNodes:
                 skinned = mesh[0].skinned_by is not None
                 placed = self._placed(node, np.eye(4) if skinned else frame)
                 own = None if skinned else collider
-                yield NodeContent(node, mesh, material, extras.voxrt_collider, own, placed, extras.voxrt_rule)
+                how = (extras.voxrt_rule, extras.voxrt_fill)
+                yield NodeContent(node, mesh, material, extras.voxrt_collider, own, placed, *how)
                 if not skinned:
                     continue
             else:
-                for key in ("voxrt_collider", "voxrt_rule"):
+                for key in ("voxrt_collider", "voxrt_rule", "voxrt_fill"):
                     if getattr(extras, key) is not None:
                         problem, fix = "the node shows no triangles", "put it on the node with the mesh"
                         raise self._document.error(f"nodes[{node}].extras.{key}", problem, fix)

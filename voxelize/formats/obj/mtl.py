@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.formats.colour_range import clamped
 from voxrt.voxelize.formats.obj.text import read_text, spellings
+from voxrt.voxelize.formats.written_numbers import is_number, not_a_number
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -17,7 +19,7 @@ if TYPE_CHECKING:
 # Keywords that do not affect the base colour.
 _WITHOUT_EFFECT = frozenset(
     {
-        *("ka", "ke", "ks", "ns", "ni", "tf", "illum", "sharpness", "km", "pr", "pm", "ps", "pc", "pcr", "aniso"),
+        *("ka", "ks", "ns", "ni", "tf", "illum", "sharpness", "km", "pr", "pm", "ps", "pc", "pcr", "aniso"),
         *("anisor", "map_ka", "map_ke", "map_ks", "map_ns", "map_bump", "bump", "map_disp", "disp", "decal", "refl"),
         *("norm", "map_norm", "map_pr", "map_pm", "map_ps", "map_refl", "map_aat"),
     }
@@ -65,7 +67,8 @@ class MtlMaterial:
 
     name: str
     folder: Path  # of its library
-    colour: tuple[float, float, float] | None = None  # ``Kd``, three reals, as written; None where there is none
+    colour: tuple[float, float, float] | None = None  # ``Kd``, three reals of 0 … 1; None where there is none
+    emission: tuple[float, float, float] | None = None  # ``Ke``, likewise
     opacity: float = 1.0  # ``d``, or 1 - ``Tr`` where there is no ``d``
     opacity_statement: str = ""  # the statement that gave it
     texture: MtlTexture | None = None  # ``map_Kd``, or None
@@ -88,6 +91,9 @@ def read_mtl(path: Path, log: WarningLog) -> dict[str, MtlMaterial]:
             log.add("unknown-statement", f"{path.name}: statements before the first newmtl were ignored")
         elif keyword and current is not None:
             _set(current, keyword, argument, _Place(path, text.place(line), log))
+    for material in materials.values():
+        if material.emission and any(material.emission) and not any(material.colour or ()):
+            material.colour = material.emission  # what reflects nothing shows what it emits
     return materials
 
 
@@ -99,10 +105,12 @@ class _Place:
 
 
 def _set(material: MtlMaterial, keyword: str, argument: str, place: _Place) -> None:
-    if keyword in ("kd", "d", "tr"):
+    if keyword in ("kd", "ke", "d", "tr"):
         argument = spellings(argument)[-1]
     if keyword == "kd":
-        material.colour = _colour(argument, place)
+        material.colour = _colour("Kd", argument, place)
+    elif keyword == "ke":
+        material.emission = _colour("Ke", argument, place)
     elif keyword == "d":
         material.opacity = _real(argument.split()[-1:], place)
         material.opacity_statement = f"d {argument}"
@@ -119,18 +127,19 @@ def _set(material: MtlMaterial, keyword: str, argument: str, place: _Place) -> N
         place.log.add("unknown-statement", f"{place.path.name}: {keyword!r} was ignored")
 
 
-def _colour(argument: str, place: _Place) -> tuple[float, float, float] | None:
+def _colour(keyword: str, argument: str, place: _Place) -> tuple[float, float, float] | None:
     words = argument.split()
     if words[:1] in (["spectral"], ["xyz"]):
-        message = f"{place.path.name}: Kd {words[0]} is not supported; the default colour was used"
+        message = f"{place.path.name}: {keyword} {words[0]} is not supported; the default colour was used"
         place.log.add("material-colour", message)
         return None
     values = [_real([word], place) for word in words[:3]]
     if len(values) == 1:  # the format defines one value as a grey
         values *= 3
     if len(values) != 3:
-        raise AssetError(place.path, "Kd needs three numbers", place=place.line, fix="repair the line")
-    return values[0], values[1], values[2]
+        raise AssetError(place.path, f"{keyword} needs three numbers", place=place.line, fix="repair the line")
+    red, green, blue = clamped(values, place.log).tolist()
+    return red, green, blue
 
 
 def _texture(keyword: str, argument: str, place: _Place) -> MtlTexture | None:
@@ -146,7 +155,7 @@ def _texture(keyword: str, argument: str, place: _Place) -> MtlTexture | None:
         values: list[str] = []
         while len(values) < most:
             word, _, after = rest.partition(" ")
-            if len(values) >= fewest and not _is_number(word):
+            if len(values) >= fewest and not is_number(word.encode()):
                 break
             values.append(word)
             rest = after.lstrip()
@@ -163,19 +172,8 @@ def _texture(keyword: str, argument: str, place: _Place) -> MtlTexture | None:
     return MtlTexture(rest, scale, offset, clamp) if rest else None
 
 
-def _is_number(word: str) -> bool:
-    try:
-        float(word)
-    except ValueError:
-        return False
-    return True
-
-
 def _real(words: list[str], place: _Place) -> float:
-    try:
-        value = float(words[0])
-    except (IndexError, ValueError):
-        value = math.nan
-    if not math.isfinite(value):
-        raise AssetError(place.path, f"{' '.join(words)!r} is not a number", place=place.line, fix="repair the line")
-    return value
+    word = "".join(words[:1])
+    if not is_number(word.encode()) or not math.isfinite(float(word)):
+        raise not_a_number(place.path, word.encode(), place.line)
+    return float(word)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.formats.colour_range import clamped
 from voxrt.voxelize.formats.obj.text import Text, index_rows, real_rows
 
 if TYPE_CHECKING:
@@ -168,8 +169,7 @@ def _vertices(
         broken = ~np.isfinite(colours).all(axis=1)
         log.add("vertex-colour", "vertex colours that are not numbers were taken as black", int(broken.sum()))
         colours[broken] = 0.0
-        log.add("colour-range", "vertex colours above 1 were clamped", int((colours > 1.0).any(axis=1).sum()))
-        colours = np.clip(colours, 0.0, 1.0)
+        colours = clamped(colours, log)
     if len(counts) and (counts == counts[0]).all():
         return np.ascontiguousarray(values.reshape(len(counts), -1)[:, :3]), colours
     return values[begins[:, None] + np.arange(3)], colours

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8
+from voxrt.voxelize.formats.colour_range import clamped
 from voxrt.voxelize.formats.ply.format import Column, ListColumn, Table
 
 if TYPE_CHECKING:
@@ -20,6 +22,7 @@ _CHANNELS = (
     ("diffuse_red", "diffuse_green", "diffuse_blue", "alpha"),
     ("r", "g", "b", "a"),
 )
+_LIKE_A_COLOUR = re.compile("red|green|blue|colou?r|rgb", re.IGNORECASE)
 
 
 def linear_colours(table: Table, log: WarningLog) -> NDArray[np.float64] | None:
@@ -33,9 +36,13 @@ def stored_colours(table: Table, log: WarningLog) -> tuple[NDArray[np.uint8], ND
 
     Whole numbers and reals are sRGB alike.
     """
-    columns = {name: one for name, one in table.items() if not isinstance(one, ListColumn)}
+    columns = {name.lower(): one for name, one in table.items() if not isinstance(one, ListColumn)}
     names = next((names for names in _CHANNELS if columns.keys() >= set(names[:3])), None)
     if names is None:
+        left = [name for name in table if _LIKE_A_COLOUR.search(name)]
+        log.add(
+            "vertex-colour", f"properties {', '.join(left)} were left out: name colours red, green, blue", bool(left)
+        )
         return None
     *channels, alpha = (columns.get(name) for name in names)
     stored = [np.round(_unit(one, log) * 255.0).astype(np.uint8) for one in channels if one is not None]
@@ -50,6 +57,4 @@ def _unit(column: Column, log: WarningLog) -> NDArray[np.float64]:
     full = {"u1": 255.0, "i1": 127.0, "u2": 65535.0, "i2": 32767.0, "i4": 255.0, "u4": 255.0, "i8": 255.0}.get(
         column.dtype.str[1:], 1.0
     )
-    values = np.nan_to_num(column.astype(np.float64), nan=0.0, posinf=1.0, neginf=0.0) / full
-    log.add("colour-range", "colours above the range of their type were clamped", int((values > 1.0).sum()))
-    return np.clip(values, 0.0, 1.0)
+    return clamped(column.astype(np.float64)[:, None] / full, log)[:, 0]

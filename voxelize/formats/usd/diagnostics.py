@@ -53,12 +53,16 @@ def caught(path: Path, log: WarningLog) -> Iterator[None]:
         del delegate
 
 
+_MOST_SHOWN = 1000  # characters of a diagnostic
+
+
 def _commentary(diagnostic: object) -> str:
-    """Return the text of a diagnostic, which may quote bytes of the file that are not text."""
+    """Return the text of a diagnostic, which may quote bytes of the file that are not text, and paths of any length."""
     try:
-        return str(getattr(diagnostic, "commentary", diagnostic))
+        text = str(getattr(diagnostic, "commentary", diagnostic))
     except UnicodeDecodeError:
         return "the file holds text that is not UTF-8"
+    return text if len(text) <= _MOST_SHOWN else f"{text[:_MOST_SHOWN]}…"
 
 
 _ADDRESS = re.compile(r"(?:@anon:0x[0-9a-f]+(?::[^@]*)?@|\s*<?\b0x[0-9a-f]{6,}\b>?)")

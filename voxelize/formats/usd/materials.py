@@ -10,10 +10,11 @@ from pxr import Usd, UsdShade
 
 from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
 from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.formats.colour_range import clamped
 from voxrt.voxelize.formats.opacity import log_left_out
 from voxrt.voxelize.formats.usd import primvars
 from voxrt.voxelize.formats.usd.images import image_coordinates
-from voxrt.voxelize.formats.usd.shading import NO_SHADING, Shading, display_srgb, read_shading
+from voxrt.voxelize.formats.usd.shading import NO_SHADING, Shading, clamped_colour, display_srgb, read_shading
 from voxrt.voxelize.formats.usd.values import integers
 from voxrt.voxelize.materials import DEFAULT_COLOUR
 
@@ -88,10 +89,8 @@ class Materials:
             if shading.primvar is not None:
                 corner_colours = primvars.at_corners(prim, shading.primvar, surface, self.time, self.log)
                 if corner_colours is not None and corner_colours.shape[2] >= 3:
-                    colours[here, :, :3], entry_of[here] = (
-                        np.clip(corner_colours[here, :, :3], 0.0, 1.0),
-                        len(entries),
-                    )
+                    colours[here, :, :3] = clamped(corner_colours[here, :, :3], self.log)
+                    entry_of[here] = len(entries)
                     entries.append(Appearance(shading.name or shading.primvar))
                     continue
             materials[here] = self._uniform(shading, faces)
@@ -109,7 +108,7 @@ class Materials:
         alpha = float(opacity[0]) if opacity is not None else 1.0
         colour = primvars.constant(prim, "displayColor", self.time)
         if colour is not None and len(colour) >= 3:
-            linear = (float(colour[0]), float(colour[1]), float(colour[2]))
+            linear = clamped_colour((float(colour[0]), float(colour[1]), float(colour[2])), self.log)
             red, green, blue = display_srgb(linear)
             return Shading(f"#{red:02x}{green:02x}{blue:02x}", linear, alpha)
         if primvars.exists(prim, "displayColor", self.time):

@@ -44,6 +44,8 @@ def interpolated(
     name: str, values: NDArray[np.float64], interpolation: str, surface: Surface, log: WarningLog
 ) -> NDArray[np.float64] | None:
     """Return values, float64, shape (N, K), at the corners of a surface's triangles, as :func:`at_corners` does."""
+    broken = int((~np.isfinite(values)).any(axis=1).sum())
+    log.add("primvar", f"values of primvars {name!r} that are not numbers were taken as 0", broken)
     values = np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0)
     if len(values) == 1 or interpolation == UsdGeom.Tokens.constant:
         return np.broadcast_to(values[0], (len(surface.triangles), 3, values.shape[1]))

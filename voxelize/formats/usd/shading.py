@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
-import numpy as np
 from pxr import Sdf, Usd, UsdShade
 
 from voxrt.voxelize.colour.srgb import srgb_from_linear
+from voxrt.voxelize.formats.colour_range import clamped
 from voxrt.voxelize.formats.usd.values import numbers
 
 if TYPE_CHECKING:
@@ -78,7 +78,7 @@ def read_shading(material: UsdShade.Material, time: Usd.TimeCode, log: WarningLo
     if colour is not None and colour.is_black():
         emitted = _input(shader, _EMISSION_INPUTS, time, log)
         colour = emitted if emitted and not emitted.is_black() else colour  # what reflects nothing shows what it emits
-    plain = colour.value if colour else None
+    plain = clamped_colour(colour.value, log) if colour and colour.value else None
     is_preview = shader.GetIdAttr().Get() == "UsdPreviewSurface"
     if plain is None and colour is not None and colour.image is None and colour.primvar is None and is_preview:
         plain = _FALLBACK_DIFFUSE
@@ -97,10 +97,15 @@ def read_shading(material: UsdShade.Material, time: Usd.TimeCode, log: WarningLo
     )
 
 
+def clamped_colour(colour: Linear, log: WarningLog) -> Linear:
+    """Return a colour within 0 … 1, as :func:`~voxrt.voxelize.formats.colour_range.clamped` does."""
+    red, green, blue = clamped(colour, log).tolist()
+    return red, green, blue
+
+
 def display_srgb(colour: Linear) -> tuple[int, int, int]:
-    """Return a linear colour as sRGB, 0 … 255; NaN becomes black."""
-    finite = np.nan_to_num(np.array(colour), nan=0.0, posinf=1.0, neginf=0.0)
-    red, green, blue = (int(value) for value in srgb_from_linear(finite))
+    """Return a linear colour as sRGB, 0 … 255."""
+    red, green, blue = srgb_from_linear(colour).tolist()
     return red, green, blue
 
 

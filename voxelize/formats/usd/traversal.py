@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from pxr import Usd, UsdGeom, UsdPhysics
@@ -19,7 +19,7 @@ from voxrt.voxelize.formats.usd.normals import authored_normals
 from voxrt.voxelize.formats.usd.physics import colliders_of
 from voxrt.voxelize.formats.usd.skin import PREDICATE, Deformed, deformed_meshes
 from voxrt.voxelize.mesh import NO_TRIANGLES
-from voxrt.voxelize.rules import RULES
+from voxrt.voxelize.rules import OBJECT_FILLS, RULES
 from voxrt.voxelize.scene import SceneObject
 from voxrt.voxelize.warning_log import WarningLog
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.formats.external_files import ExternalFiles
     from voxrt.voxelize.formats.reader_process.limits import Allowance
     from voxrt.voxelize.formats.usd.shading import Shading
-    from voxrt.voxelize.rules import Rule
+    from voxrt.voxelize.rules import ObjectFill, Rule
 
 MOST_OBJECTS = 1_000_000
 """The most objects of a stage: nested instancers can request more copies than memory holds."""
@@ -51,7 +51,8 @@ _PROTOTYPE_PREDICATE = Usd.TraverseInstanceProxies(Usd.PrimIsActive & Usd.PrimIs
 class _PlacedMesh:
     """An object whose mesh, an index into the traversal's meshes, has no materials yet; None for a hidden object.
 
-    `body` is the path of the rigid body that it is part of; empty for none. `rule`: see :func:`_rule_of`.
+    `body` is the path of the rigid body that it is part of; empty for none. `rule` and `fill`: see
+    :func:`_own_choice`.
     """
 
     name: str
@@ -60,6 +61,7 @@ class _PlacedMesh:
     colliders: tuple[Collider, ...]
     body: str
     rule: Rule | None
+    fill: ObjectFill | None
 
 
 @dataclass(eq=False, slots=True)
@@ -115,6 +117,7 @@ class StageTraversal:
                     material,
                     represented=represented,
                     rule=one.rule,
+                    fill=one.fill,
                 )
             )
         for one, transform in zip(placed, transforms, strict=True):
@@ -122,7 +125,16 @@ class StageTraversal:
                 material = next((nearest[above] for above in _ancestors(one.name) if above in nearest), 0)
                 material = material or self.materials.table.default(self.log)
                 objects.append(
-                    SceneObject(one.name, NO_TRIANGLES, transform, one.colliders, material, hidden=True, rule=one.rule)
+                    SceneObject(
+                        one.name,
+                        NO_TRIANGLES,
+                        transform,
+                        one.colliders,
+                        material,
+                        hidden=True,
+                        rule=one.rule,
+                        fill=one.fill,
+                    )
                 )
         return tuple(objects)
 
@@ -211,8 +223,7 @@ class StageTraversal:
             if colliders:
                 self._charge(1)
                 transform = self._to_stage(deformed.frame if deformed else prim)
-                rule = _rule_of(prim, self.path)
-                placed.append(_PlacedMesh(str(prim.GetPath()), None, transform, colliders, _body_of(prim), rule))
+                placed.append(self._placed(prim, None, transform, colliders))
         self.log.add("collider", "colliders that are not shown count with geometry collider alone", len(placed))
         return placed
 
@@ -239,8 +250,13 @@ class StageTraversal:
         self._charge(1)
         colliders = colliders_of(source, surface, self.time, self.log)
         transform = self._to_stage(deformed.frame if deformed else prim)
-        rule = _rule_of(prim, self.path)
-        return [_PlacedMesh(name, self._rows[shared], transform, colliders, _body_of(prim), rule)]
+        return [self._placed(prim, self._rows[shared], transform, colliders)]
+
+    def _placed(
+        self, prim: Usd.Prim, mesh: int | None, transform: NDArray[np.float64], colliders: tuple[Collider, ...]
+    ) -> _PlacedMesh:
+        rule, fill = _own_choice(prim, "rule", RULES, self.path), _own_choice(prim, "fill", OBJECT_FILLS, self.path)
+        return _PlacedMesh(str(prim.GetPath()), mesh, transform, colliders, _body_of(prim), rule, fill)
 
     def _count_without_surface(self, prim: Usd.Prim) -> None:
         """Count a prim without a surface."""
@@ -267,16 +283,17 @@ def _ancestors(path: str) -> Iterator[str]:
         yield path
 
 
-_RULE = "voxrt:rule"  # an attribute of prims: a token
+T = TypeVar("T", bound=str)
 
 
-def _rule_of(prim: Usd.Prim, path: Path) -> Rule | None:
-    """Return which voxels a prim fills: as it says, or its nearest ancestor; None for what the build says."""
+def _own_choice(prim: Usd.Prim, name: str, choices: tuple[T, ...], path: Path) -> T | None:
+    """Return what a prim says by the token ``voxrt:NAME``, or its nearest ancestor; None for what the build says."""
+    attribute = f"voxrt:{name}"
     at = prim
-    while at and not at.HasAttribute(_RULE):
+    while at and not at.HasAttribute(attribute):
         at = at.GetParent()
-    wanted = at.GetAttribute(_RULE).Get() if at else None
-    if wanted is None or wanted in RULES:
+    wanted = at.GetAttribute(attribute).Get() if at else None
+    if wanted is None or wanted in choices:
         return wanted
-    place = f"{at.GetPath()}.{_RULE}"
-    raise AssetError(path, f"{str(wanted)[:60]!r} is no rule", place=place, fix=f"name one of {', '.join(RULES)}")
+    place = f"{at.GetPath()}.{attribute}"
+    raise AssetError(path, f"{str(wanted)[:60]!r} is no {name}", place=place, fix=f"name one of {', '.join(choices)}")

@@ -95,11 +95,6 @@ template <typename T, size_t N> nb::object take(LargeVector<std::array<T, N>>& r
 
 NamedTuple voxelized, voxel_block, voxel_volumes;
 
-Fill fill_of(const std::string& name) {
-    require(name == "surface" || name == "solid" || name == "auto", "fill must be surface, solid or auto");
-    return name == "surface" ? Fill::surface : name == "solid" ? Fill::solid : Fill::automatic;
-}
-
 Thin thin_of(const std::string& name) {
     require(name == "keep" || name == "drop", "thin must be keep or drop");
     return name == "keep" ? Thin::keep : Thin::drop;
@@ -109,12 +104,16 @@ Thin thin_of(const std::string& name) {
 class SceneParts {
 public:
     SceneParts(int grid_depth, std::vector<MeshArrays> meshes, InputOf<uint8_t> kinds, InputOf<int32_t> mesh_of,
-               InputOf<double> frames, InputOf<uint8_t> materials, InputOf<int32_t> objects_of, InputOf<uint8_t> rules)
+               InputOf<double> frames, InputOf<uint8_t> materials, InputOf<int32_t> objects_of, InputOf<uint8_t> rules,
+               InputOf<uint8_t> fills)
         : depth(grid_depth), objects(rules.size()), meshes_(std::move(meshes)), frames_(std::move(frames)) {
         require(depth >= 1 && depth <= 16, "depth must be 1 … 16");
-        require(rules.ndim() == 1, "rules must have an element per object");
-        require(std::all_of(rules.data(), rules.data() + rules.size(), [](uint8_t rule) { return rule <= 2; }),
-                "rules must be 0 … 2");
+        for (const auto* choices : {&rules, &fills}) {
+            require(choices->ndim() == 1 && choices->size() == objects,
+                    "rules and fills must have an element per object");
+            require(std::all_of(choices->data(), choices->data() + objects, [](uint8_t one) { return one <= 2; }),
+                    "rules and fills must be 0 … 2");
+        }
         const size_t count = kinds.size();
         require(kinds.ndim() == 1 && mesh_of.ndim() == 1 && materials.ndim() == 1 && objects_of.ndim() == 1 &&
                     mesh_of.size() == count && materials.size() == count && objects_of.size() == count,
@@ -142,7 +141,8 @@ public:
                     "objects_of must be below the number of objects");
             require(p == 0 || objects_of.data()[p - 1] <= objects_of.data()[p], "objects_of must ascend");
             parts.push_back({kind, mesh, frames_.data() + 12 * p, materials.data()[p], uint32_t(objects_of.data()[p]),
-                             static_cast<Rule>(rules.data()[objects_of.data()[p]])});
+                             static_cast<Rule>(rules.data()[objects_of.data()[p]]),
+                             static_cast<Fill>(fills.data()[objects_of.data()[p]])});
         }
     }
     SceneParts(const SceneParts&) = delete;
@@ -174,13 +174,13 @@ nb::object voxelized_of(SparseVoxels& out) {
 
 void require_threads(int threads) { require(threads >= 0 && threads <= 1024, "threads must be 0 … 1024"); }
 
-nb::object voxelize_parts(const SceneParts& scene, const std::string& fill, const std::string& thin, int threads,
+nb::object voxelize_parts(const SceneParts& scene, const std::string& thin, int threads,
                           const std::string& instructions) {
     require_threads(threads);
     SparseVoxels out;
     {
         const LongCall call;
-        out = voxelize(scene.depth, scene.parts, scene.objects, fill_of(fill), threads, thin_of(thin), instructions);
+        out = voxelize(scene.depth, scene.parts, scene.objects, threads, thin_of(thin), instructions);
     }
     return voxelized_of(out);
 }
@@ -212,16 +212,14 @@ nb::object volumes_of_parts(const SceneParts& scene, int threads, const std::str
 /// A BlockVoxelizer. The parts must outlive it.
 class PythonBlockVoxelizer {
 public:
-    PythonBlockVoxelizer(const SceneParts& scene, const std::string& fill, const std::string& thin, int threads,
-                         InputOf<uint8_t> wanted)
+    PythonBlockVoxelizer(const SceneParts& scene, const std::string& thin, int threads, InputOf<uint8_t> wanted)
         : side_(1 << scene.depth), objects_(scene.objects) {
         require_threads(threads);
         require(wanted.ndim() == 1 && (wanted.size() == 0 || wanted.size() == objects_),
                 "wanted must have an element per object, or none");
         const LongCall call;
-        native_ =
-            std::make_unique<BlockVoxelizer>(scene.depth, scene.parts, objects_, fill_of(fill), threads, thin_of(thin),
-                                             std::span<const uint8_t>(wanted.data(), wanted.size()));
+        native_ = std::make_unique<BlockVoxelizer>(scene.depth, scene.parts, objects_, threads, thin_of(thin),
+                                                   std::span<const uint8_t>(wanted.data(), wanted.size()));
     }
 
     void use_threads(int threads) {
@@ -327,6 +325,8 @@ objects_of
     Shape (P,): ascending, below O.
 rules
     Shape (O,), by object: 0 touch, 1 centre, 2 half (src/rules/rule.h).
+fills
+    Shape (O,), by object: 0 solid, 1 surface, 2 auto (src/scene/fill.h).
 
 Raises
 ------
@@ -339,8 +339,6 @@ Parameters
 ----------
 parts
     :class:`SceneParts`.
-fill
-    "surface", "solid" or "auto": src/scene/fill.h.
 thin
     "keep" or "drop".
 threads
@@ -416,18 +414,18 @@ NB_MODULE(_native, m) {
         nullptr);
     nb::class_<SceneParts>(m, "SceneParts", kPartsManual)
         .def(nb::init<int, std::vector<MeshArrays>, InputOf<uint8_t>, InputOf<int32_t>, InputOf<double>,
-                      InputOf<uint8_t>, InputOf<int32_t>, InputOf<uint8_t>>(),
+                      InputOf<uint8_t>, InputOf<int32_t>, InputOf<uint8_t>, InputOf<uint8_t>>(),
              nb::arg("depth"), nb::arg("meshes"), nb::arg("kinds"), nb::arg("mesh_of"), nb::arg("frames"),
-             nb::arg("materials"), nb::arg("objects_of"), nb::arg("rules"));
-    m.def("voxelize", &voxelize_parts, nb::arg("parts"), nb::arg("fill"), nb::arg("thin"), nb::arg("threads"),
+             nb::arg("materials"), nb::arg("objects_of"), nb::arg("rules"), nb::arg("fills"));
+    m.def("voxelize", &voxelize_parts, nb::arg("parts"), nb::arg("thin"), nb::arg("threads"),
           nb::arg("instructions") = "", kVoxelizeManual);
     m.def("find_volumes", &volumes_of_parts, nb::arg("parts"), nb::arg("threads"), nb::arg("instructions") = "",
-          "Which part of each voxel with surface an object fills; the rules do not matter. By object: objects, voxels "
+          "Which part of each voxel with surface an object fills; the rules and fills do not matter. By object: "
+          "objects, voxels "
           "(x, y, z), volumes. Per object: voxels that are filled whole, and whether it has volumes.");
     nb::class_<PythonBlockVoxelizer>(m, "BlockVoxelizer", kBlockVoxelizerManual)
-        .def(nb::init<const SceneParts&, const std::string&, const std::string&, int, InputOf<uint8_t>>(),
-             nb::keep_alive<1, 2>(), nb::arg("parts"), nb::arg("fill"), nb::arg("thin"), nb::arg("threads"),
-             nb::arg("wanted"))
+        .def(nb::init<const SceneParts&, const std::string&, int, InputOf<uint8_t>>(), nb::keep_alive<1, 2>(),
+             nb::arg("parts"), nb::arg("thin"), nb::arg("threads"), nb::arg("wanted"))
         .def("use_threads", &PythonBlockVoxelizer::use_threads, nb::arg("threads"), "Sets the number of threads.")
         .def("blocks", &PythonBlockVoxelizer::blocks, nb::arg("block_side"),
              "The corners (x, y) of the blocks with geometry, in Morton order: int32, shape (B, 2).")

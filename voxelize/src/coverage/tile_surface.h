@@ -47,6 +47,13 @@ struct RepeatedCrossing {
     bool enters;
 };
 
+/// What a triangle adds to volumes in up to eight columns of a tile, in voxel z + n of each.
+struct ColumnPieces {
+    int32_t x[8], y[8], z[8]; // x, y: from the tile's lowest column
+    int32_t voxels[8];        // nothing is added where n is not below
+    alignas(64) double areas[8], volumes[8];
+};
+
 class TileSurface {
 public:
     /// For tiles of a grid of `side` voxels.
@@ -143,6 +150,9 @@ public:
         pieces[place] += volume;
         pieces[place + 64] += area - volume;
     }
+
+    /// The same for the first `count` columns. In a file of its own, as add_row_slowly.
+    void add_pieces(const ColumnPieces& columns, int count, int n);
 
     /// Brick `k` (along z) of a brick column, or null.
     ShellBrick* find(int column, int k) {

@@ -10,12 +10,23 @@ namespace {
 
 constexpr int64_t kWideExtent = int64_t{1} << 24;
 
+/// The normal of a triangle, rounded.
+struct Normal {
+    double x, y, z;
+
+    Normal(const Vertex& a, const Vertex& b, const Vertex& c) {
+        const double u[3] = {double(b.x) - a.x, double(b.y) - a.y, double(b.z) - a.z};
+        const double v[3] = {double(c.x) - a.x, double(c.y) - a.y, double(c.z) - a.z};
+        x = u[1] * v[2] - u[2] * v[1];
+        y = u[2] * v[0] - u[0] * v[2];
+        z = u[0] * v[1] - u[1] * v[0];
+    }
+};
+
 /// Whether heights of the plane of a wide triangle are exact in doubles wherever the triangle's box is.
 bool is_flat_enough(const Vertex& a, const Vertex& b, const Vertex& c) {
-    const double x[2] = {double(b.x) - a.x, double(c.x) - a.x}, y[2] = {double(b.y) - a.y, double(c.y) - a.y},
-                 z[2] = {double(b.z) - a.z, double(c.z) - a.z};
-    const double nx = y[0] * z[1] - y[1] * z[0], ny = z[0] * x[1] - z[1] * x[0], nz = x[0] * y[1] - x[1] * y[0];
-    return nz == 0 || std::abs(nx) + std::abs(ny) < std::abs(nz) * 0x1p37;
+    const Normal n(a, b, c);
+    return n.z == 0 || std::abs(n.x) + std::abs(n.y) < std::abs(n.z) * 0x1p37;
 }
 
 } // namespace
@@ -32,6 +43,17 @@ bool fits_vectors(const Vertex& a, const Vertex& b, const Vertex& c) {
               z = voxel_below(high_z) - voxel_floor(low_z);
     return x >= 0 && y >= 0 && z >= 0 && (x > 0) + (y > 0) + (z > 0) > 1 &&
            (extent < kNarrowExtent || is_flat_enough(a, b, c));
+}
+
+bool fits_pieces(const Vertex& a, const Vertex& b, const Vertex& c, int top) {
+    constexpr double kSteep = 128 * kUnit;
+    const auto [low_x, high_x] = std::minmax({a.x, b.x, c.x});
+    const auto [low_y, high_y] = std::minmax({a.y, b.y, c.y});
+    const auto [low_z, high_z] = std::minmax({a.z, b.z, c.z});
+    const double extent = std::max({double(high_x) - low_x, double(high_y) - low_y, double(high_z) - low_z});
+    const Normal n(a, b, c);
+    return high_z <= (top + 1) * kUnit &&
+           std::abs(n.z) * kSteep > (std::abs(n.x) + std::abs(n.y) + std::abs(n.z)) * extent;
 }
 
 const std::vector<CoverageEngine>& coverage_engines() {

@@ -11,18 +11,26 @@ namespace voxrt::voxelize {
 /// in two axes, nor below the grid, nor wide and all but upright.
 bool fits_vectors(const Vertex& a, const Vertex& b, const Vertex& c);
 
-/// Adds to a surface what triangle abc covers of the surface's tile, and which columns it crosses where `crosses`.
-/// `window`: the tile's.
+/// Whether they find the pieces of triangle abc (volume_pieces.h), too: it fits vectors, is no higher than voxel `top`,
+/// and not upright, and its extent in voxels is below 128, or 128 by its slope.
+bool fits_pieces(const Vertex& a, const Vertex& b, const Vertex& c, int top);
+
+/// What is wanted beside the voxels that a triangle covers: which columns it crosses, its pieces.
+struct Wanted {
+    bool crosses = false, pieces = false;
+};
+
+/// Adds to a surface what triangle abc covers of the surface's tile, and what else is wanted. `window`: the tile's.
 /// The engine of the page has none: compiled to WebAssembly, eight at once take twice the time of one after the other.
-using CoverByVectors = void (*)(const Vertex& a, const Vertex& b, const Vertex& c, const Window& window, bool crosses,
-                                TileSurface& surface);
-void cover_by_vectors_portable(const Vertex& a, const Vertex& b, const Vertex& c, const Window& window, bool crosses,
-                               TileSurface& surface);
+using CoverByVectors = void (*)(const Vertex& a, const Vertex& b, const Vertex& c, const Window& window,
+                                const Wanted& wanted, TileSurface& surface);
+void cover_by_vectors_portable(const Vertex& a, const Vertex& b, const Vertex& c, const Window& window,
+                               const Wanted& wanted, TileSurface& surface);
 #if defined(__x86_64__)
-void cover_by_vectors_avx2(const Vertex& a, const Vertex& b, const Vertex& c, const Window& window, bool crosses,
-                           TileSurface& surface);
-void cover_by_vectors_avx512(const Vertex& a, const Vertex& b, const Vertex& c, const Window& window, bool crosses,
-                             TileSurface& surface);
+void cover_by_vectors_avx2(const Vertex& a, const Vertex& b, const Vertex& c, const Window& window,
+                           const Wanted& wanted, TileSurface& surface);
+void cover_by_vectors_avx512(const Vertex& a, const Vertex& b, const Vertex& c, const Window& window,
+                             const Wanted& wanted, TileSurface& surface);
 #endif
 
 /// The instruction sets that this processor has, the fastest first.

@@ -12,19 +12,13 @@
 #include "../vectors/lanes.h"
 #include "covered_bytes.h"
 #include "vector_coverage.h"
+#include "vector_pieces.h"
+#include "vector_plane.h"
 
 namespace voxrt::voxelize {
 namespace {
 
-constexpr double kBeyond = 0x1p30; // voxels: beyond all, in either direction
-constexpr double kVoxel = kUnit;
 constexpr double kSample = (kUnit + 1) / 2.0; // of a column's ray in its voxel
-
-// A triangle: x and y from the window's lowest column, z from the triangle's lowest voxel, `bottom`.
-struct Corners {
-    double x[3], y[3], z[3];
-    int bottom;
-};
 
 // An edge, upwards along one axis.
 struct Edge {
@@ -74,16 +68,6 @@ private:
         return nearest_whole((all(rise_) * along + all(start_ + offset)) * all(reciprocal_));
     }
     double start_, rise_, run_, reciprocal_;
-};
-
-// Intervals of eight slabs, or of eight planes between slabs.
-struct EightExtents {
-    Lanes lo = all(kBeyond), hi = all(-kBeyond);
-    // Nothing changes where an end is not a number.
-    void extend(const Lanes& low, const Lanes& high) {
-        lo = smaller(low, lo);
-        hi = larger(high, hi);
-    }
 };
 
 struct Extents {
@@ -184,132 +168,6 @@ inline void find_columns(const Corners& t, int x0, int count, Extents& z) {
     }
 }
 
-// Remainders: Lanes for narrow triangles, LongLanes for others.
-inline void set_all(Lanes& lanes, int64_t v) { lanes = all(static_cast<double>(v)); }
-inline Lanes one_unless_less(const Lanes& a, const Lanes& b) { return if_less(a, b, all(0), all(1)); }
-inline Lanes less_if_reached(const Lanes& rest, const Lanes& limit) {
-    return rest - if_less(rest, limit, all(0), limit);
-}
-inline Lanes chosen(Mask lanes, const Lanes& v) { return choose(lanes, v, all(0)); }
-
-template <class Operation> inline LongLanes each_long(const Operation& operation) {
-    LongLanes out;
-    for (int i = 0; i < kParts; ++i)
-        out.part[i] = operation(i);
-    return out;
-}
-inline LongLanes operator+(const LongLanes& a, const LongLanes& b) {
-    return each_long([&](int i) { return a.part[i] + b.part[i]; });
-}
-inline LongLanes operator-(const LongLanes& a, const LongLanes& b) {
-    return each_long([&](int i) { return a.part[i] - b.part[i]; });
-}
-inline void set_all(LongLanes& lanes, int64_t v) {
-    lanes = each_long([&](int) { return v - LongPart{}; });
-}
-inline Lanes one_unless_less(const LongLanes& a, const LongLanes& b) {
-    return each([&](int i) {
-        return reinterpret_cast<Part>((a.part[i] >= b.part[i]) & reinterpret_cast<LongPart>(1 - Part{}));
-    });
-}
-inline LongLanes less_if_reached(const LongLanes& rest, const LongLanes& limit) {
-    return each_long([&](int i) { return rest.part[i] - ((rest.part[i] >= limit.part[i]) & limit.part[i]); });
-}
-inline LongLanes chosen(Mask lanes, const LongLanes& v) {
-    return each_long([&](int i) {
-        LongPart found = v.part[i];
-        for (int lane = 0; lane < kPartLanes; ++lane)
-            found[lane] = lanes >> (i * kPartLanes + lane) & 1 ? found[lane] : 0;
-        return found;
-    });
-}
-
-// A quotient of whole numbers: its whole part, and the rest of the numerator.
-template <class Rest> struct Quotients {
-    Lanes whole;
-    Rest rest;
-
-    Quotients() = default;
-    Quotients(const Lanes& whole, const Rest& rest) : whole(whole), rest(rest) {}
-    template <class Wide> Quotients(Wide numerator, Wide denominator) {
-        const Wide quotient = floor_div<Wide>(numerator, denominator);
-        whole = all(static_cast<double>(static_cast<int64_t>(quotient)));
-        set_all(rest, static_cast<int64_t>(numerator - quotient * denominator));
-    }
-    void add(const Quotients& other, const Rest& denominator) {
-        rest = rest + other.rest;
-        whole = whole + other.whole + one_unless_less(rest, denominator);
-        rest = less_if_reached(rest, denominator);
-    }
-};
-
-// The voxels that a triangle's plane passes, eight columns at a time, row by row.
-template <class Wide, class Rest> class PlaneRows {
-public:
-    // Begins at column x of row y.
-    PlaneRows(const Corners& t, int x, int y) {
-        int64_t edge[2][3];
-        for (int i = 0; i < 2; ++i) {
-            edge[i][0] = static_cast<int64_t>(t.x[i + 1] - t.x[0]);
-            edge[i][1] = static_cast<int64_t>(t.y[i + 1] - t.y[0]);
-            edge[i][2] = static_cast<int64_t>(t.z[i + 1] - t.z[0]);
-        }
-        auto product = [&](int u, int v) { return edge[0][u] * edge[1][v] - edge[0][v] * edge[1][u]; };
-        int64_t nx = product(1, 2), ny = product(2, 0), nz = product(0, 1);
-        enters_ = nz < 0;
-        if (nz == 0) { // it passes all voxels of the columns that the rows and columns leave
-            set_all(unit_, 1);
-            set_all(carry_, 1);
-            height_ = all(4 * kBeyond);
-            row_ = Quotients<Rest>(Wide{0}, Wide{1});
-            next_row_ = next_group_ = row_;
-            row_.whole = all(-2 * kBeyond);
-            return;
-        }
-        if (enters_) {
-            nx = -nx;
-            ny = -ny;
-            nz = -nz;
-        }
-        const Wide unit = nz * kUnit;
-        set_all(unit_, static_cast<int64_t>(unit));
-        const Quotients<Rest> height(static_cast<Wide>((nx < 0 ? -nx : nx) + (ny < 0 ? -ny : ny)) * kUnit - 1, unit);
-        height_ = height.whole;
-        carry_ = unit_ - height.rest;
-        auto corner = [&](int64_t n, double at) { return static_cast<Wide>(n) * static_cast<int64_t>(at); };
-        row_ = Quotients<Rest>(corner(nx, t.x[0]) + corner(ny, t.y[0]) + corner(nz, t.z[0]) -
-                                   corner(nx, (x + (nx > 0)) * kVoxel) - corner(ny, (y + (ny > 0)) * kVoxel),
-                               unit);
-        row_.whole = row_.whole + all(t.bottom);
-        next_row_ = Quotients<Rest>(corner(-ny, kVoxel), unit);
-        Quotients<Rest> columns(corner(-nx, kVoxel), unit); // 1, 2, 4 and at last 8
-        for (const Mask lanes : {0xAA, 0xCC, 0xF0}) {
-            row_.add({chosen(lanes, columns.whole), chosen(lanes, columns.rest)}, unit_);
-            columns.add(columns, unit_);
-        }
-        next_group_ = columns;
-    }
-
-    // Whether rays upwards enter the solid.
-    bool enters() const { return enters_; }
-
-    void begin_row() { group_ = row_; }
-    void end_row() { row_.add(next_row_, unit_); }
-    void end_group() { group_.add(next_group_, unit_); }
-
-    // Narrows the voxels of a group's columns.
-    void narrow(EightExtents& z) const {
-        z.lo = larger(group_.whole, z.lo);
-        z.hi = smaller(group_.whole + height_ + one_unless_less(group_.rest, carry_), z.hi);
-    }
-
-private:
-    bool enters_;
-    Rest unit_, carry_; // carry_: which rest makes one more than height_
-    Lanes height_;      // (spread - 1) / unit
-    Quotients<Rest> row_, next_row_, group_, next_group_;
-};
-
 // Bits first ... last, which are 0 ... 63 or none.
 inline uint64_t bits_between(int first, int last) {
     return first > last ? 0 : ~uint64_t{0} << first & ~uint64_t{0} >> (63 - last);
@@ -330,7 +188,7 @@ struct Area {
 };
 
 template <class Wide, class Rest>
-inline void cover_area(const Corners& t, const Area& area, bool crosses, TileSurface& surface) {
+inline void cover_area(const Corners& t, const Area& area, bool crosses, Pieces* pieces, TileSurface& surface) {
     const auto [x0, x1, y0, y1, top] = area;
     const int first_group = x0 / kLanes, first_column = first_group * kLanes;
     const Rows rows(t, y0, y1 - y0 + 1, x0, x1, top, crosses);
@@ -360,6 +218,10 @@ inline void cover_area(const Corners& t, const Area& area, bool crosses, TileSur
             alignas(32) int32_t lo[kLanes], hi[kLanes];
             store_as_int(lo, z.lo);
             store_as_int(hi, larger(z.hi, z.lo - all(1)));
+            if (pieces != nullptr)
+                for (int i = 0; i < kLanes; ++i)
+                    if (lo[i] <= hi[i] && (covered >> (group * kLanes + i) & 1) != 0)
+                        pieces->add_column(group * kLanes + i, y, lo[i], hi[i]);
             for (int brick = first_brick; brick <= last_brick; brick += IntervalBytes::kBricks) {
                 const IntervalBytes bytes(lo, hi, brick * kBrickSide);
                 for (int i = 0; i < IntervalBytes::kBricks && brick + i <= last_brick; ++i)
@@ -373,7 +235,7 @@ inline void cover_area(const Corners& t, const Area& area, bool crosses, TileSur
 
 } // namespace
 
-void VOXRT_COVER_BY_VECTORS(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w, bool crosses,
+void VOXRT_COVER_BY_VECTORS(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w, const Wanted& wanted,
                             TileSurface& surface) {
     auto least = [](int32_t u, int32_t v, int32_t s) { return u < v ? (u < s ? u : s) : (v < s ? v : s); };
     auto most = [](int32_t u, int32_t v, int32_t s) { return u > v ? (u > s ? u : s) : (v > s ? v : s); };
@@ -397,10 +259,18 @@ void VOXRT_COVER_BY_VECTORS(const Vertex& a, const Vertex& b, const Vertex& c, c
         return high - low;
     };
     const Area area{x0, x1, y0, y1, w.top};
-    if (width(t.x) < kNarrowExtent && width(t.y) < kNarrowExtent && width(t.z) < kNarrowExtent)
-        cover_area<int64_t, Lanes>(t, area, crosses, surface);
-    else
-        cover_area<int128, LongLanes>(t, area, crosses, surface);
+    if (!(width(t.x) < kNarrowExtent && width(t.y) < kNarrowExtent && width(t.z) < kNarrowExtent)) {
+        cover_area<int128, LongLanes>(t, area, wanted.crosses, nullptr, surface);
+    } else if (!wanted.pieces) {
+        cover_area<int64_t, Lanes>(t, area, wanted.crosses, nullptr, surface);
+    } else {
+        double z[3];
+        for (int i = 0; i < 3; ++i)
+            z[i] = corners[i]->z;
+        Pieces pieces(t.x, t.y, z, surface);
+        cover_area<int64_t, Lanes>(t, area, wanted.crosses, &pieces, surface);
+        pieces.finish();
+    }
 }
 
 } // namespace voxrt::voxelize

@@ -29,10 +29,18 @@ struct EdgeUse {
 /// positions are equal about once in 2^64. n log n.
 std::vector<uint32_t> weld(const std::vector<uint64_t>& keys);
 
+/// An edge between vertices low < high, and the vertices on it, on the way from low to high.
+struct EdgeCut {
+    uint32_t low, high;
+    std::vector<uint32_t> at;
+};
+
 class MeshEdges {
 public:
     /// `welded`: for each vertex the one that stands for its position. The mesh must outlive this.
     MeshEdges(const MeshView& mesh, std::vector<uint32_t> welded);
+    /// The same faces, with some edges cut into several. `cuts` are in the order of each().
+    MeshEdges(const MeshEdges& whole, const std::vector<EdgeCut>& cuts);
 
     size_t face_count() const { return mesh_.triangle_count(); }
     size_t vertex_count() const { return welded_.size(); }
@@ -53,6 +61,9 @@ public:
     }
 
 private:
+    /// Sorts uses by a counting sort. each_use(visit) calls visit(low, use) for each, twice in the same order.
+    template <class EachUse> void sort_uses(EachUse&& each_use);
+
     const MeshView& mesh_;
     std::vector<uint32_t> welded_;
     std::vector<size_t> starts_; // of uses_, by low vertex

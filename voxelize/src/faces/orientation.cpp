@@ -48,17 +48,21 @@ int surplus_of(Uses uses) {
 struct Component {
     bool is_balanced = true;       // each edge is walked as often one way as the other
     bool is_two_sided = false;     // a face that is there once for each side parts inside from outside
+    bool is_paired = true;         // each face is there as often for each side, and its pieces have two sides
     uint32_t outside = UINT32_MAX; // a cell
     int128 least = 0;              // its volume
     int64_t kept = 0, turned = 0;  // faces that part inside from outside: as authored, the other way around
     double enclosing_area = 0, loose_area = 0;
     bool is_settled() const { return outside != UINT32_MAX && kept + turned > 0 && (!is_balanced || is_two_sided); }
+    /// Whether the file does not say which way its faces count.
+    bool is_unsaid() const { return !is_balanced || is_paired; }
 };
 
 class Faces {
 public:
-    Faces(const MeshEdges& edges, const std::vector<Vertex>& vertices, bool flat)
-        : edges_(edges), at_(vertices), flat_(flat), count_(uint32_t(edges.face_count())), connected_(count_) {
+    Faces(const MeshEdges& whole, const MeshEdges& edges, const std::vector<Vertex>& vertices, bool flat)
+        : whole_(whole), edges_(edges), at_(vertices), flat_(flat), count_(uint32_t(edges.face_count())),
+          connected_(count_) {
         edges_.each([&](uint32_t, Uses uses) {
             for (const EdgeUse& use : uses)
                 connected_.merge(use.face, uses[0].face);
@@ -79,10 +83,13 @@ public:
         settle(*found);
         turn_loose(*found);
         for (uint32_t f = 0; f < count_; ++f)
-            if (first_[f] != f && is_ours(f) && changes(own(f)))
+            if (first_[f] != f && is_ours(f) && changes(own(f))) {
+                // The two faces of a sheet go on covering both layers beside a plane between voxels.
+                const bool is_sheet = own(f).is_balanced && !own(f).is_settled();
                 found->faces[f] =
-                    uint8_t(Orientation::kUncounted | Orientation::kSettled | Orientation::kRepeated |
-                            ((found->is_reversed(first_[f]) != opposed_[f]) ? Orientation::kReversed : 0));
+                    uint8_t(Orientation::kUncounted | Orientation::kSettled | (is_sheet ? 0 : Orientation::kRepeated) |
+                            (found->is_reversed(first_[f]) != (opposed_[f] && !is_sheet) ? Orientation::kReversed : 0));
+            }
         const bool any =
             std::any_of(found->faces.begin(), found->faces.end(), [](uint8_t state) { return state != 0; });
         return any || found->one_sided > 0 ? found : nullptr;
@@ -93,21 +100,24 @@ private:
     void find_components() {
         edges_.each([&](uint32_t, Uses uses) {
             const bool balanced = uses.size() == 1 || surplus_of(uses) == 0;
-            bool repeated = false;
-            each_repeated(uses, sorted_, [&](const EdgeUse&, const EdgeUse&) { repeated = true; });
-            if (balanced && !repeated && !(flat_ && uses.size() > 2))
-                return;
-            uint32_t& index = component_of_[connected_.find(uses[0].face)];
-            if (index == UINT32_MAX) {
-                index = uint32_t(components_.size());
-                components_.emplace_back();
-            }
-            components_[index].is_balanced &= balanced;
+            if (!balanced || (flat_ && uses.size() > 2))
+                found_at(uses[0].face).is_balanced &= balanced;
         });
+        whole_.each([&](uint32_t, Uses uses) {
+            each_repeated(uses, sorted_, [&](const EdgeUse& first, const EdgeUse&) { found_at(first.face); });
+        });
+    }
+    Component& found_at(uint32_t face) {
+        uint32_t& index = component_of_[connected_.find(face)];
+        if (index == UINT32_MAX) {
+            index = uint32_t(components_.size());
+            components_.emplace_back();
+        }
+        return components_[index];
     }
     bool is_ours(uint32_t face) { return component_of_[connected_.find(face)] != UINT32_MAX; }
     Component& own(uint32_t face) { return components_[component_of_[connected_.find(face)]]; }
-    static bool changes(const Component& component) { return component.is_settled() || !component.is_balanced; }
+    static bool changes(const Component& component) { return component.is_settled() || component.is_unsaid(); }
 
     /// For each face the first one with the same corners, and whether that one is wound the other way.
     void find_repeated() {
@@ -115,7 +125,7 @@ private:
         std::iota(first_.begin(), first_.end(), 0u);
         opposed_.assign(count_, false);
         surplus_.assign(count_, 1);
-        edges_.each([&](uint32_t, Uses uses) {
+        whole_.each([&](uint32_t, Uses uses) {
             each_repeated(uses, sorted_, [&](const EdgeUse& first, const EdgeUse& again) {
                 if (first_[again.face] != again.face)
                     return;
@@ -192,12 +202,13 @@ private:
         });
     }
 
-    /// Finds components whose outside and inside are parted by faces that are there once for each side: equal ones, or
-    /// such that hold a cell without volume between them.
+    /// Finds components that are there once for each side as a whole; and those whose outside and inside are parted by
+    /// faces that are: equal ones, or such that hold a cell without volume between them.
     void find_two_sided() {
         enum : uint8_t { kTouchesOutside = 1, kTouchesInside = 2, kBoth = 3 };
         std::vector<uint8_t> touches(2 * size_t(count_), 0);
         each_first([&](uint32_t f, Component& component) {
+            component.is_paired &= surplus_[f] == 0 && pieces_.find(front(f)) != pieces_.find(back(f));
             const uint32_t cells[2] = {cells_.find(front(f)), cells_.find(back(f))};
             for (int i = 0; i < 2; ++i) {
                 const uint32_t own = cells[i], other = cells[1 - i];
@@ -251,7 +262,7 @@ private:
     void turn_loose(Orientation& found) {
         std::vector<uint32_t> fronts(2 * size_t(count_), 0); // by side of a piece
         const auto is_loose = [&](uint32_t f, const Component& component) {
-            return found.faces[f] == 0 && !component.is_balanced;
+            return found.faces[f] == 0 && component.is_unsaid();
         };
         each_first([&](uint32_t f, Component& component) {
             if (is_loose(f, component))
@@ -266,11 +277,11 @@ private:
                 found.one_sided += own == front(f);
             } else if (fronts[own] < fronts[other] || (fronts[own] == fronts[other] && own > other)) {
                 reversed.push_back(f);
+                found.turned += !component.is_balanced;
             }
         });
         for (const uint32_t f : reversed)
             found.faces[f] = Orientation::kReversed;
-        found.turned += uint32_t(reversed.size());
     }
 
     bool is_inside(uint32_t side, const Component& component) { return cells_.find(side) != component.outside; }
@@ -290,7 +301,7 @@ private:
         return std::hypot(uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx);
     }
 
-    const MeshEdges& edges_;
+    const MeshEdges &whole_, &edges_;
     const std::vector<Vertex>& at_;
     bool flat_;
     uint32_t count_;
@@ -308,16 +319,18 @@ private:
 
 } // namespace
 
-std::shared_ptr<const Orientation> find_orientation(const MeshEdges& edges, const std::vector<Vertex>& vertices,
-                                                    bool flat) {
+std::shared_ptr<const Orientation> find_orientation(const MeshEdges& whole, const MeshEdges& edges,
+                                                    const std::vector<Vertex>& vertices, bool flat) {
     bool consistent = true;
-    std::vector<EdgeUse> sorted;
     edges.each([&](uint32_t, Uses uses) {
         if (uses.size() > 1)
             consistent = consistent && surplus_of(uses) == 0 && (!flat || uses.size() == 2);
+    });
+    std::vector<EdgeUse> sorted;
+    whole.each([&](uint32_t, Uses uses) {
         each_repeated(uses, sorted, [&](const EdgeUse&, const EdgeUse&) { consistent = false; });
     });
-    return consistent ? nullptr : Faces(edges, vertices, flat).orient();
+    return consistent ? nullptr : Faces(whole, edges, vertices, flat).orient();
 }
 
 bool has_repeated_faces(const MeshView& mesh, const std::vector<uint64_t>& vertex_keys) {

@@ -8,7 +8,8 @@
 // outside on both sides, decide nothing. What remains closes exactly, whatever its faces cross.
 //
 // Connected faces whose edges are walked as often one way as the other keep the orientation of the file: its cavities
-// stay. The exception are faces stored twice, once for each side: they count once.
+// stay. The exception are faces stored twice, once for each side: they count once, where they enclose something or
+// where all faces of a piece are so.
 //
 // Where faces enclose nothing, those that meet in pairs are turned to face as most of them do. A piece that has one
 // side only, like a Klein bottle, stays as it is, and is counted.
@@ -44,11 +45,12 @@ struct Orientation {
     }
 };
 
-/// Null where all is as the file says. `vertices`: by vertex of the mesh, in grid space or in any finer lattice.
-/// `flat`: some of the surface has no volume, so that consistent faces may be two sides of one. Linear in the faces but
-/// for sorting those at edges of more than two.
-std::shared_ptr<const Orientation> find_orientation(const MeshEdges& edges, const std::vector<Vertex>& vertices,
-                                                    bool flat);
+/// Null where all is as the file says. `whole`: the edges of the faces. `edges`: the same, or cut where other edges
+/// meet them (mesh/cut_edges.h). `vertices`: by vertex of the mesh, in grid space or in any finer lattice. `flat`: some
+/// of the surface has no volume, so that consistent faces may be two sides of one. Linear in the faces but for sorting
+/// those at edges of more than two.
+std::shared_ptr<const Orientation> find_orientation(const MeshEdges& whole, const MeshEdges& edges,
+                                                    const std::vector<Vertex>& vertices, bool flat);
 
 /// Whether some triangle is there twice, either way around; vertices at one position count as one. Compares 31 bits of
 /// a hash, so about one triangle of 10^9 is mistaken for another. About 10 ns per triangle.

@@ -2,12 +2,15 @@
 
 #include "../faces/closed_surface.h"
 #include "../work/interrupt.h"
+#include "cut_edges.h"
 
 #include <functional>
 #include <optional>
 
 namespace voxrt::voxelize {
 namespace {
+
+constexpr double kSeams = 1e-6; // the share of a surface's area that openings have which close but for rounding
 
 /// Points in a lattice of their own, so fine that those of a float32 file stay apart.
 std::vector<Vertex> in_lattice(const std::vector<Point>& points, const Point& low, const Point& high) {
@@ -95,7 +98,8 @@ Enclosed find_enclosed(const MeshView& mesh, const TriangleSums& sums, double bo
     std::optional<MeshEdges> edges;
     const auto orient = [&](bool flat) {
         edges.emplace(mesh, weld(keys));
-        found.orientation = find_orientation(*edges, vertices, flat);
+        const std::optional<MeshEdges> cut = cut_edges(*edges, vertices);
+        found.orientation = find_orientation(*edges, cut ? *cut : *edges, vertices, flat);
         if (found.orientation) {
             found.closed = closes(*edges, *found.orientation);
             found.volume6 = volume6_of(mesh, points(), *found.orientation);
@@ -202,7 +206,9 @@ void analyze_part(MeshAnalysis& analysis, const PartView& part, const TriangleSu
             *part.mesh, sums, box, keys, analysis.vertices, [&] { return points_of(analysis.vertices); }, fill);
     }
     analysis.closed = found.closed;
-    analysis.inverted = found.closed && found.volume6 < 0;
+    // What closes but for the seams of T-junctions has a volume as well.
+    const bool is_tight = found.hole_caps && found.hole_caps->shell_only.empty() && found.hole_caps->opening < kSeams;
+    analysis.inverted = (found.closed || is_tight) && found.volume6 < 0;
     if (found.closed && found.orientation && found.orientation->components > 0)
         analysis.inverted = shared != nullptr && determinant(part.frame) < 0;
     analysis.hole_caps = found.hole_caps;

@@ -23,7 +23,7 @@ struct VoxelBox {
 struct MeshAnalysis {
     std::vector<Vertex> vertices; // snapped; empty where tiles snap the vertices themselves
     bool closed = false;
-    bool inverted = false; // closed, with normals that point inwards
+    bool inverted = false; // closed, but for seams, with normals that point inwards
     VoxelBox box{};
     std::shared_ptr<const HoleCaps> hole_caps; // where the part does not close and is to be filled
     std::unique_ptr<CappedSurface> capped;     // of `hole_caps`; null in an instance whose tiles make it themselves

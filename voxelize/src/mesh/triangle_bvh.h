@@ -1,4 +1,4 @@
-// A bounding volume hierarchy over triangles: finds those whose boxes overlap a box.
+// A bounding volume hierarchy over triangles: finds those whose boxes overlap a box, or something else.
 //
 // Built by halving the triangles along the longest axis of their box, at the median of their centres. Building takes
 // n log n; a query takes log n, and what it finds.
@@ -61,6 +61,11 @@ public:
 
     /// Calls visit(number) for every triangle whose box overlaps `box`.
     template <class Visit> void find(const TriangleBox& box, Visit&& visit) const {
+        find_where([&](const TriangleBox& other) { return other.overlaps(box); }, visit);
+    }
+
+    /// Calls visit(number) for every triangle whose box meets(box); so must each box that holds one which does.
+    template <class Meets, class Visit> void find_where(Meets&& meets, Visit&& visit) const {
         uint32_t stack[64];
         int depth = 0;
         if (!nodes_.empty())
@@ -68,7 +73,7 @@ public:
         while (depth > 0) {
             count_work(1);
             const Node& node = nodes_[stack[--depth]];
-            if (!node.box.overlaps(box))
+            if (!meets(node.box))
                 continue;
             if (node.right != 0) {
                 stack[depth++] = node.right;
@@ -76,7 +81,7 @@ public:
                 continue;
             }
             for (uint32_t i = node.first; i < node.last; ++i)
-                if (triangles_[i].first.overlaps(box))
+                if (meets(triangles_[i].first))
                     visit(triangles_[i].second);
         }
     }

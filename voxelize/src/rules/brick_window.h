@@ -52,37 +52,17 @@ public:
         each([](const uint16_t* r) { return at(r) | at(r + kPlane) | at(r - kPlane); });
     }
 
-    /// Leaves the voxels of cubes of 2 x 2 x 2 voxels of the set, and adds the 26 neighbours of each. One voxel of the
-    /// margin is right afterwards.
+    /// Leaves the voxels of cubes of 2 x 2 x 2 voxels of the set, and adds the 26 neighbours of each. The margin is not
+    /// right afterwards.
     void keep_near_cubes() {
-        static_assert(margin == 3);
+        static_assert(margin == 2);
         each([](const uint16_t* r) { return at(r) & at(r) >> 1; });
         each([](const uint16_t* r) { return at(r) & at(r + 1); });
         each([](const uint16_t* r) { return at(r) & at(r + kPlane); });
         each([](const uint16_t* r) { return at(r) >> 1 | at(r) | at(r) << 1 | at(r) << 2; });
         each([](const uint16_t* r) { return at(r - 2) | at(r - 1) | at(r) | at(r + 1); });
-        each<1>([](const uint16_t* r) { return at(r - 2 * kPlane) | at(r - kPlane) | at(r) | at(r + kPlane); });
+        each<0>([](const uint16_t* r) { return at(r - 2 * kPlane) | at(r - kPlane) | at(r) | at(r + kPlane); });
     }
-
-    /// Takes away the voxels of another window, and the margin but for one voxel. Returns whether any is left.
-    template <int other> bool remove(const BrickWindow<other>& window) {
-        constexpr uint16_t x = 0b0001'1111'1111'1000;
-        constexpr Eight wanted[2] = {{0, 0, 0, x, x, x, x, x}, {x, x, x, x, x, 0, 0, 0}};
-        Eight any{};
-        for (int z = -margin; z < kBrickSide + margin; ++z)
-            for (int half = 0; half < 2; ++half) {
-                uint16_t* const rows = &row(half * 8 - kFirst, z);
-                const bool is_near = z >= -1 && z <= kBrickSide;
-                const Eight left = is_near ? at(rows) & ~at(window.rows(half * 8 - kFirst, z)) & wanted[half] : Eight{};
-                std::memcpy(rows, &left, sizeof left);
-                any |= left;
-            }
-        typedef uint64_t Two __attribute__((vector_size(16)));
-        const auto words = reinterpret_cast<Two>(any);
-        return (words[0] | words[1]) != 0;
-    }
-
-    const uint16_t* rows(int y, int z) const { return &rows_[size_t((z + kFirst) * kPlane + y + kFirst)]; }
 
 private:
     static constexpr int kPlane = 16; // rows

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <vector>
 
 namespace voxrt::voxelize {
@@ -102,6 +103,42 @@ public:
         return found;
     }
 
+    /// The voxels of a brick whose neighbour at a side belongs to a set. `of`: the set in a listed brick;
+    /// `whole`: whether all of a brick that is solid as a whole belongs to it.
+    template <class Of> static Slices shifted_by(const std::array<uint32_t, 27>& around, int side, Of of, bool whole) {
+        auto set = [&](uint32_t n) {
+            if (n < kFull)
+                return of(n);
+            Slices all;
+            all.fill(n == kFull && whole ? ~uint64_t{0} : 0);
+            return all;
+        };
+        constexpr uint64_t first = 0x0101'0101'0101'0101;
+        const Slices here = set(around[13]), there = set(around[size_t(kSides[side])]);
+        Slices found;
+        for (int z = 0; z < kBrickSide; ++z)
+            switch (side) {
+            case 0:
+                found[z] = (here[z] & ~(first << 7)) << 1 | (there[z] & first << 7) >> 7;
+                break;
+            case 1:
+                found[z] = (here[z] & ~first) >> 1 | (there[z] & first) << 7;
+                break;
+            case 2:
+                found[z] = here[z] << 8 | there[z] >> 56;
+                break;
+            case 3:
+                found[z] = here[z] >> 8 | there[z] << 56;
+                break;
+            case 4:
+                found[z] = z > 0 ? here[z - 1] : there[kBrickSide - 1];
+                break;
+            default:
+                found[z] = z + 1 < kBrickSide ? here[z + 1] : there[0];
+            }
+        return found;
+    }
+
 private:
     static constexpr int kCubeBits = 9; // of the code of a brick in its cube of 8 x 8 x 8 bricks
     static constexpr size_t kCubeBricks = size_t{1} << kCubeBits;
@@ -119,8 +156,26 @@ private:
                 return table_[at].cube;
     }
 
+    /// Sorts by code. Bricks come in ascending runs, each of a tile's cube.
     static void sort(std::vector<RuleBrick>& bricks) {
-        std::sort(bricks.begin(), bricks.end(), [](const auto& a, const auto& b) { return a.code < b.code; });
+        const auto is_before = [](const auto& a, const auto& b) { return a.code < b.code; };
+        std::vector<std::span<const RuleBrick>> runs;
+        for (auto at = bricks.cbegin(); at != bricks.cend();) {
+            const auto end = std::adjacent_find(at, bricks.cend(), [&](auto& a, auto& b) { return !is_before(a, b); });
+            const auto next = end == bricks.cend() ? end : end + 1;
+            runs.emplace_back(at, next);
+            at = next;
+        }
+        if (runs.size() < 2)
+            return;
+        std::sort(runs.begin(), runs.end(), [](auto& a, auto& b) { return a.front().code < b.front().code; });
+        std::vector<RuleBrick> sorted;
+        sorted.reserve(bricks.size());
+        for (const auto& run : runs)
+            sorted.insert(sorted.end(), run.begin(), run.end());
+        if (!std::is_sorted(sorted.begin(), sorted.end(), is_before))
+            std::sort(sorted.begin(), sorted.end(), is_before);
+        bricks = std::move(sorted);
     }
 
     void index() {

@@ -1,5 +1,6 @@
 #include "rule_voxels.h"
 
+#include "brick_materials.h"
 #include "brick_window.h"
 #include "replaced_bricks.h"
 #include "rule_bricks.h"
@@ -10,29 +11,16 @@
 namespace voxrt::voxelize {
 namespace {
 
-/// The materials of a solid brick's voxels: one, or by Morton code in the brick.
-struct BrickMaterials {
-    uint8_t only = 0;
-    const std::array<uint8_t, 512>* cells = nullptr;
-    uint8_t at(size_t place) const { return cells == nullptr ? only : (*cells)[place]; }
-};
-
-BrickMaterials materials_of(const SparseVoxels& voxels, uint64_t code) {
-    const auto& codes = voxels.brick_codes;
-    const auto brick = size_t(std::lower_bound(codes.begin(), codes.end(), code) - codes.begin());
-    if (brick == codes.size() || codes[brick] != code)
-        return {voxels.octant_materials[find_octant(voxels, code)]};
-    if (voxels.brick_rows[brick] < 0)
-        return {voxels.brick_materials[brick]};
-    return {0, &voxels.cells[size_t(voxels.brick_rows[brick])]};
-}
-
 class RuledVoxels {
 public:
     RuledVoxels(const SparseVoxels& around, RuleFindings& findings)
         : voxels_(around), bricks_(around, std::move(findings.bricks)), owned_(std::move(findings.owned)),
           mixed_(std::move(findings.mixed)) {
         std::sort(mixed_.begin(), mixed_.end(), [](const auto& a, const auto& b) { return a.code < b.code; });
+        has_several_objects_ = std::any_of(owned_.begin(), owned_.end(),
+                                           [this](const auto& one) { return one.object != owned_[0].object; });
+        if (!has_several_objects_)
+            return; // their order does not matter
         std::sort(owned_.begin(), owned_.end(), [](const OwnedSurface& a, const OwnedSurface& b) {
             return a.code != b.code ? a.code < b.code : a.object < b.object;
         });
@@ -43,7 +31,7 @@ public:
     /// Finds the voxels of parts that have none of their own. The bricks must be final.
     void find_orphans(const Workers& workers) {
         orphans_.assign(bricks_.size(), Slices{});
-        if (std::all_of(owned_.begin(), owned_.end(), [this](const auto& o) { return o.object == owned_[0].object; }))
+        if (!has_several_objects_)
             return; // nothing else could take a material
         for_each_brick(workers, [this](size_t i) {
             if (!is_empty(bricks_[i].removed()))
@@ -53,7 +41,7 @@ public:
 
     /// Finds by areas what shows of several materials. The bricks and orphans must be final.
     void find_shown(const BrickArea& area, const FindAreas& find_areas, const Workers& workers) {
-        if (has_one_material())
+        if (material_of_surfaces() != 0)
             return;
         std::vector<ContestedVoxels> found((bricks_.size() + kBricks - 1) / kBricks);
         for_each_brick(workers, [&](size_t i) {
@@ -78,9 +66,15 @@ public:
     /// The bricks of an area that differ from what is touched.
     ReplacedBricks replaced(const BrickArea& area, const Workers& workers) const {
         std::vector<ReplacedBricks> found((bricks_.size() + kBricks - 1) / kBricks);
+        const uint8_t only = material_of_all();
         for_each_brick(workers, [&](size_t i) {
-            if (is_in(area, bricks_[i].code))
+            const RuleBrick& brick = bricks_[i];
+            if (!is_in(area, brick.code))
+                return;
+            if (only == 0)
                 add_replaced(i, found[i / kBricks]);
+            else if (!is_empty(brick.removed()))
+                found[i / kBricks].bricks.push_back({brick.code, morton_order(brick.filled), only, 0});
         });
         ReplacedBricks all;
         for (ReplacedBricks& part : found) {
@@ -130,11 +124,18 @@ private:
         return x >= area.x0 && x < area.x1 && y >= area.y0 && y < area.y1;
     }
 
-    bool has_one_material() const {
-        const auto is_other = [first = voxels_.brick_materials.empty() ? 0 : voxels_.brick_materials[0]](uint8_t m) {
-            return m == 0 || m != first;
-        };
-        return std::none_of(voxels_.brick_materials.begin(), voxels_.brick_materials.end(), is_other);
+    /// The only material of all bricks with surface, or 0.
+    uint8_t material_of_surfaces() const {
+        const auto& materials = voxels_.brick_materials;
+        const uint8_t first = materials.empty() ? 0 : materials[0];
+        return std::all_of(materials.begin(), materials.end(), [first](uint8_t m) { return m == first; }) ? first : 0;
+    }
+
+    /// The only material of all voxels, or 0.
+    uint8_t material_of_all() const {
+        const auto& insides = voxels_.octant_materials;
+        const uint8_t only = material_of_surfaces();
+        return std::all_of(insides.begin(), insides.end(), [only](uint8_t m) { return m == only; }) ? only : 0;
     }
 
     /// The material with the largest sum of areas over some voxels, the first of several; 0 where there is none.
@@ -167,10 +168,10 @@ private:
         Slices lost[6], mixed = mixed_in(brick.code), forced{}, any = mixed, visible{};
         BrickMaterials beside[6];
         for (int side = 0; side < 6; ++side) {
-            lost[side] = shifted_by(around, side, removed, false);
-            const Slices lost_mixed = shifted_by(around, side, removed_mixed, false);
-            const Slices lying = shifted_by(around, side, orphans, false);
-            const Slices hidden = shifted_by(around, side, filled, true);
+            lost[side] = RuleBricks::shifted_by(around, side, removed, false);
+            const Slices lost_mixed = RuleBricks::shifted_by(around, side, removed_mixed, false);
+            const Slices lying = RuleBricks::shifted_by(around, side, orphans, false);
+            const Slices hidden = RuleBricks::shifted_by(around, side, filled, true);
             for (size_t z = 0; z < kBrickSide; ++z) {
                 visible[z] |= ~hidden[z];
                 mixed[z] |= lost_mixed[z];
@@ -281,45 +282,10 @@ private:
     template <class Of> Slices beside(const std::array<uint32_t, 27>& around, Of of, bool whole) const {
         Slices found{};
         for (int side = 0; side < 6; ++side) {
-            const Slices shifted = shifted_by(around, side, of, whole);
+            const Slices shifted = RuleBricks::shifted_by(around, side, of, whole);
             for (int z = 0; z < kBrickSide; ++z)
                 found[z] |= shifted[z];
         }
-        return found;
-    }
-
-    /// The voxels of a brick whose neighbour at a side belongs to a set.
-    template <class Of> Slices shifted_by(const std::array<uint32_t, 27>& around, int side, Of of, bool whole) const {
-        auto set = [&](uint32_t n) {
-            if (n < RuleBricks::kFull)
-                return of(n);
-            Slices all;
-            all.fill(n == RuleBricks::kFull && whole ? ~uint64_t{0} : 0);
-            return all;
-        };
-        constexpr uint64_t first = 0x0101'0101'0101'0101;
-        const Slices here = set(around[13]), there = set(around[size_t(kSides[side])]);
-        Slices found;
-        for (int z = 0; z < kBrickSide; ++z)
-            switch (side) {
-            case 0:
-                found[z] = (here[z] & ~(first << 7)) << 1 | (there[z] & first << 7) >> 7;
-                break;
-            case 1:
-                found[z] = (here[z] & ~first) >> 1 | (there[z] & first) << 7;
-                break;
-            case 2:
-                found[z] = here[z] << 8 | there[z] >> 56;
-                break;
-            case 3:
-                found[z] = here[z] >> 8 | there[z] << 56;
-                break;
-            case 4:
-                found[z] = z > 0 ? here[z - 1] : there[kBrickSide - 1];
-                break;
-            default:
-                found[z] = z + 1 < kBrickSide ? here[z + 1] : there[0];
-            }
         return found;
     }
 
@@ -331,8 +297,8 @@ private:
         const Slices bare = without(brick.filled, brick.surface);
         Slices takers[6], done{};
         for (int side = 0; side < 6; ++side) {
-            const Slices shown = shifted_by(around, side, removed, false);
-            const Slices lying = shifted_by(around, side, orphans, false);
+            const Slices shown = RuleBricks::shifted_by(around, side, removed, false);
+            const Slices lying = RuleBricks::shifted_by(around, side, orphans, false);
             for (int z = 0; z < kBrickSide; ++z) {
                 takers[side][z] = ((shown[z] & bare[z]) | (lying[z] & brick.filled[z] & brick.surface[z])) & ~done[z];
                 done[z] |= takers[side][z];
@@ -391,7 +357,8 @@ private:
 
     const SparseVoxels& voxels_;
     RuleBricks bricks_;
-    std::vector<OwnedSurface> owned_; // by code and object
+    std::vector<OwnedSurface> owned_; // by code and object, where there are several
+    bool has_several_objects_ = false;
     std::vector<MixedSurface> mixed_; // by code
     std::vector<Slices> orphans_;
     std::vector<ShownVoxel> shown_; // by brick

@@ -90,17 +90,47 @@ bool leaves_none_alone(const BrickWindow<2>& filled, const BrickWindow<2>& touch
     return true;
 }
 
-Slices find_candidates(const RuleBricks& bricks, size_t i, const std::array<uint32_t, 27>& around) {
-    BrickWindow<3> bulk;
-    BrickWindow<1> apart;
-    bulk.gather(bricks.sets(around, [](const RuleBrick& b) -> const Slices& { return b.filled; }));
-    bulk.keep_near_cubes();
-    apart.gather(bricks.sets(around, [](const RuleBrick& b) -> const Slices& { return b.touched; }));
-    if (!apart.remove(bulk))
+/// Whether each touched voxel of a brick is solid in bulk, or beside a voxel that is, by the brick's own voxels.
+bool is_bulk_alone(const RuleBrick& brick) {
+    constexpr uint64_t lowest = 0x0101'0101'0101'0101, highest = lowest << 7;
+    uint64_t cubes[kBrickSide + 3] = {}; // by lowest corner, two slices further
+    for (size_t z = 0; z + 1 < kBrickSide; ++z) {
+        const uint64_t both = brick.filled[z] & brick.filled[z + 1], pairs = both & both >> 1 & ~highest;
+        cubes[z + 2] = pairs & pairs >> 8;
+    }
+    for (size_t z = 0; z < kBrickSide; ++z) {
+        const uint64_t near = cubes[z] | cubes[z + 1] | cubes[z + 2] | cubes[z + 3];
+        const uint64_t row = near | (near >> 1 & ~highest) | (near << 1 & ~lowest) | (near << 2 & ~(lowest * 3));
+        if ((brick.touched[z] & ~(row | row >> 8 | row << 8 | row << 16)) != 0)
+            return false;
+    }
+    return true;
+}
+
+/// The voxels of a brick that belong to thin parts.
+Slices find_thin(const RuleBricks& bricks, size_t i) {
+    if (is_bulk_alone(bricks[i]))
         return {};
-    apart.dilate();
+    BrickWindow<2> bulk;
+    bulk.gather(bricks.sets(bricks.around(i), [](const RuleBrick& b) -> const Slices& { return b.filled; }));
+    bulk.keep_near_cubes();
+    return without(bricks[i].touched, bulk.middle());
+}
+
+/// The voxels of a brick that are not filled, of thin parts or beside one of their voxels.
+Slices find_candidates(const RuleBricks& bricks, const std::vector<Slices>& thin, size_t i,
+                       const std::array<uint32_t, 27>& around) {
+    static constexpr Slices none{};
+    std::array<const Slices*, 27> near;
+    for (size_t n = 0; n < 27; ++n)
+        near[n] = around[n] < RuleBricks::kFull ? &thin[around[n]] : &none;
+    if (std::all_of(near.begin(), near.end(), [](const Slices* one) { return is_empty(*one); }))
+        return {};
+    BrickWindow<1> window;
+    window.gather(near);
+    window.dilate();
+    Slices found = window.middle();
     const Slices removed = bricks[i].removed();
-    Slices found = apart.middle();
     for (int z = 0; z < kBrickSide; ++z)
         found[z] &= removed[z];
     return found;
@@ -139,6 +169,17 @@ void take(const RuleBricks& bricks, ThinBrick& thin, int turn) {
 void keep_thin_parts(RuleBricks& bricks, const Workers& workers) {
     constexpr size_t kBricks = 64; // per job
     const size_t jobs = (bricks.size() + kBricks - 1) / kBricks;
+    std::vector<Slices> of_thin_parts(bricks.size());
+    std::vector<uint8_t> has_some(jobs);
+    workers.run(jobs, [&](size_t job, int) {
+        for (size_t i = job * kBricks; i < std::min(bricks.size(), (job + 1) * kBricks); ++i) {
+            count_work(100);
+            of_thin_parts[i] = find_thin(bricks, i);
+            has_some[job] |= uint8_t{!is_empty(of_thin_parts[i])};
+        }
+    });
+    if (std::none_of(has_some.begin(), has_some.end(), [](uint8_t some) { return some != 0; }))
+        return;
     std::vector<std::vector<ThinBrick>> found(jobs);
     workers.run(jobs, [&](size_t job, int) {
         for (size_t i = job * kBricks; i < std::min(bricks.size(), (job + 1) * kBricks); ++i) {
@@ -146,7 +187,7 @@ void keep_thin_parts(RuleBricks& bricks, const Workers& workers) {
             if (is_empty(bricks[i].removed()))
                 continue;
             const std::array<uint32_t, 27> around = bricks.around(i);
-            const Slices candidates = find_candidates(bricks, i, around);
+            const Slices candidates = find_candidates(bricks, of_thin_parts, i, around);
             if (!is_empty(candidates))
                 found[job].push_back({uint32_t(i), around, candidates, {}});
         }

@@ -5,6 +5,7 @@
 
 #include "../grid/fixed_point.h"
 #include "../rules/rule.h"
+#include "fill.h"
 
 #include <cmath>
 #include <span>
@@ -45,6 +46,7 @@ struct PartView {
     uint8_t material = 0; // the material of the whole part; 0: each triangle has its own
     uint32_t object = 0;  // ascending from part to part
     Rule rule = Rule::touch;
+    Fill fill = Fill::solid; // that of its object
 };
 
 /// A part reaches beyond kCoordinateLimit, or has a coordinate that is not a number.

@@ -16,6 +16,7 @@
 #include "../holes/cap_winding.h"
 #include "../holes/near_caps.h"
 #include "../mesh/mesh_analysis.h"
+#include "brick_cell.h"
 #include "tile_voxels.h"
 
 #include <algorithm>
@@ -155,9 +156,7 @@ private:
     static constexpr double kRoundable = 0.375; // error from which a whole number can be told
     static constexpr int kFewVoxels = 16;       // so few are decided one by one
 
-    struct Cell {
-        int x, y, z, side; // in a brick
-    };
+    using Cell = BrickCell;
     struct Ball {
         Point centre;
         double radius;
@@ -223,11 +222,6 @@ private:
         return there - spread > kTie ? Class::inside : there + spread < 0.5 ? Class::outside : Class::mixed;
     }
 
-    static uint64_t square_of(const Cell& cell) {
-        // A byte per row of columns.
-        const uint64_t rows = ~uint64_t{0} >> 8 * (kBrickSide - cell.side) & kFirstColumn * ((1 << cell.side) - 1);
-        return rows << column_bit(cell.x, cell.y);
-    }
     Point centre_of(const Cell& cell) const {
         const double middle = (cell.side - 1) / 2.0 + kSample;
         return {x_ + cell.x + middle, y_ + cell.y + middle, z_ + cell.z + middle};
@@ -409,30 +403,6 @@ private:
                     }
             }
     }
-
-    /// Adds the voxels of `free` in a cell that are reached from `region` through common sides.
-    static void grow(Slices& region, const Slices& free, const Cell& cell) {
-        for (bool grown = true; grown;) {
-            grown = false;
-            for (int z = cell.z; z < cell.z + cell.side; ++z) {
-                uint64_t next =
-                    region[z] | (z > cell.z ? region[z - 1] : 0) | (z + 1 < cell.z + cell.side ? region[z + 1] : 0);
-                next |= beside(next, 0) | beside(next, 1);
-                next &= free[z];
-                grown = grown || next != region[z];
-                region[z] = next;
-            }
-        }
-    }
-
-    /// The columns of a slice beside those of `columns`, along x (axis 0) or y (axis 1).
-    static uint64_t beside(uint64_t columns, int axis) {
-        if (axis == 1)
-            return columns << kBrickSide | columns >> kBrickSide;
-        return (columns & ~(kFirstColumn << (kBrickSide - 1))) << 1 | (columns & ~kFirstColumn) >> 1;
-    }
-
-    static constexpr uint64_t kFirstColumn = 0x0101'0101'0101'0101; // x = 0
 
     const CapWinding* caps_ = nullptr;
     CapWinding::Seen all_, seen_; // from anywhere; from the brick

@@ -91,11 +91,7 @@ public:
         }
         summands_.push_back({voxels, part_, last_summands_[row]});
         last_summands_[row] = uint32_t(summands_.size() - 1);
-        for (int z = 0; z < kBrickSide; ++z)
-            for (uint64_t left = voxels[z]; left != 0; left &= left - 1) {
-                const auto place = size_t(z * 64 + std::countr_zero(left));
-                sums_[row][place] += volumes[place];
-            }
+        sums_[row].add(voxels, volumes);
     }
 
     /// Appends the bricks of the tile, and who owns their surface. Returns the voxels that volumes do not decide.
@@ -113,7 +109,7 @@ public:
                 Slices filled = filled_.mask_of(*filled_.slots(column, k));
                 const size_t place = size_t(column) * size_t(tile.height()) + size_t(k);
                 if (!summed_.empty() && sum_rows_[place] != kNone)
-                    if (const Slices near = add_halves(filled, sums_[sum_rows_[place]]); !is_empty(near))
+                    if (const Slices near = sums_[sum_rows_[place]].add_halves(filled, error_bound()); !is_empty(near))
                         doubts.push_back({bricks.size(), column, k, near});
                 for (int z = 0; z < kBrickSide; ++z)
                     filled[z] &= touched[z];
@@ -133,8 +129,9 @@ public:
     /// d = 2^-40.8 of those of the true piece. In a cell a piece has a perimeter below 6 and an area below 1.5, so the
     /// area seen from above is wrong by 6 d at most and the volume by 8 d, once per triangle and column: pieces of one
     /// column share the corners where planes between its voxels cut. Rounding in the cell is a few u per piece, of at
-    /// most 2^16. Whole cells below a plane have an error of 32 u. All that is below 2^-32 per triangle. Sums of N
-    /// numbers up to N in size add N^2 u, and those along 2^16 voxels of a column N 2^-37.
+    /// most 2^16. Whole cells below a plane have an error of 32 u; vector_pieces.h has less than its cuts. All that is
+    /// below 2^-32 per triangle. Sums of N numbers up to N in size add N^2 u, and those along 2^16 voxels of a column
+    /// N 2^-37.
     double error_bound() const { return triangles_ * 0x1p-31 + triangles_ * triangles_ * 0x1p-52; }
 
     /// Calls take(part) with the parts whose volumes a voxel of a brick sums.
@@ -156,7 +153,7 @@ public:
                 for (uint64_t left = surface[z] & ~whole[z]; left != 0; left &= left - 1) {
                     const int bit = std::countr_zero(left);
                     const uint64_t place = morton(uint32_t(column_x(bit)), uint32_t(column_y(bit)), uint32_t(z));
-                    const double volume = sums_[sum_rows_[slot]][size_t(z * 64 + bit)];
+                    const double volume = sums_[sum_rows_[slot]].at(z, bit);
                     volumes.push_back({object_, code | place, std::min(volume, 1.0)});
                 }
         }
@@ -166,24 +163,40 @@ public:
 private:
     static constexpr uint8_t kAny = 1; // a material: all voxels here have the same
 
-    /// Fills the voxels whose sums are above a half. Returns those nearer to it than the error.
-    Slices add_halves(Slices& filled, const std::array<double, kBrickVoxels>& volumes) const {
-        const double error = error_bound();
-        double nearest = 1;
-        for (int z = 0; z < kBrickSide; ++z)
-            for (int bit = 0; bit < 64; ++bit) {
-                const double over = volumes[size_t(z * 64 + bit)] - 0.5;
-                filled[z] |= uint64_t{over >= error} << bit;
-                nearest = std::min(nearest, std::abs(over));
+    /// The sums of a brick's voxels; no memory is written of those that have none.
+    class Sums {
+    public:
+        Sums() : summed_{} {} // without the values
+
+        void add(const Slices& voxels, const std::array<double, kBrickVoxels>& volumes) {
+            for (int z = 0; z < kBrickSide; ++z) {
+                for (uint64_t left = voxels[z]; left != 0; left &= left - 1) {
+                    const auto place = size_t(z * 64 + std::countr_zero(left));
+                    const bool has_sum = (summed_[z] & left & (~left + 1)) != 0;
+                    values_[place] = has_sum ? values_[place] + volumes[place] : volumes[place];
+                }
+                summed_[z] |= voxels[z];
             }
-        Slices doubtful{};
-        for (int z = 0; nearest < error && z < kBrickSide; ++z) {
-            for (int bit = 0; bit < 64; ++bit)
-                doubtful[z] |= uint64_t{std::abs(volumes[size_t(z * 64 + bit)] - 0.5) < error} << bit;
-            doubtful[z] &= ~filled[z];
         }
-        return doubtful;
-    }
+        double at(int z, int bit) const { return summed_[z] >> bit & 1 ? values_[size_t(z * 64 + bit)] : 0; }
+
+        /// Fills the voxels whose sums are above a half. Returns those nearer to it than `error`.
+        Slices add_halves(Slices& filled, double error) const {
+            Slices doubtful{};
+            for (int z = 0; z < kBrickSide; ++z)
+                for (uint64_t left = summed_[z] & ~filled[z]; left != 0; left &= left - 1) {
+                    const int bit = std::countr_zero(left);
+                    const double over = values_[size_t(z * 64 + bit)] - 0.5;
+                    filled[z] |= uint64_t{over >= error} << bit;
+                    doubtful[z] |= uint64_t{std::abs(over) < error} << bit;
+                }
+            return doubtful;
+        }
+
+    private:
+        Slices summed_;
+        std::array<double, kBrickVoxels> values_;
+    };
 
     /// What one part adds to the sums of a brick.
     struct Summand {
@@ -199,7 +212,7 @@ private:
     TileVoxels filled_, surface_, mixed_;
     std::vector<uint32_t> sum_rows_; // by slot: where the sums of volumes stand
     std::vector<size_t> summed_;     // the slots that have some
-    std::vector<std::array<double, kBrickVoxels>> sums_;
+    std::vector<Sums> sums_;
     std::vector<Summand> summands_;
     std::vector<uint32_t> last_summands_; // by row of sums_
     double triangles_ = 0;                // of parts that ask for volumes

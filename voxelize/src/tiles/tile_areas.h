@@ -85,7 +85,7 @@ private:
                 return;
             const uint32_t of = parts_[one.part].object;
             const MeshAnalysis& analysis = bins_.meshes[one.part];
-            if (of == object || !analysis.closed || !fills(fill_) ||
+            if (of == object || !analysis.closed || !fills(parts_[one.part].fill) ||
                 (analysis.orientation && analysis.orientation->is_uncounted(one.number)))
                 return;
             if (of != last) {

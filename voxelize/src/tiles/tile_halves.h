@@ -26,7 +26,7 @@ public:
             }
         TileSolids near(columns, x0, y0);
         for_each_run(index, [&](uint32_t part, std::span<const BinnedTriangle> triangles) {
-            if (parts_[part].rule != Rule::half || parts_[part].kind != PartKind::mesh)
+            if (parts_[part].rule != Rule::half || parts_[part].kind != PartKind::mesh || !fills(parts_[part].fill))
                 return;
             const std::vector<Vertex>& vertices = vertices_of(part, buffer);
             std::optional<CappedSurface> own;

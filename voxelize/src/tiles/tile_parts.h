@@ -11,8 +11,8 @@ namespace voxrt::voxelize {
 
 class TileParts {
 public:
-    TileParts(const std::vector<PartView>& parts, const TriangleBins& bins, int side, Fill fill)
-        : parts_(parts), bins_(bins), side_(side), fill_(fill) {}
+    TileParts(const std::vector<PartView>& parts, const TriangleBins& bins, int side)
+        : parts_(parts), bins_(bins), side_(side) {}
 
 protected:
     /// Calls take(part, triangles) with each part of a tile, and what the tile lists of it.
@@ -69,7 +69,6 @@ protected:
     const std::vector<PartView>& parts_;
     const TriangleBins& bins_;
     int side_;
-    Fill fill_;
 };
 
 } // namespace voxrt::voxelize

@@ -63,9 +63,8 @@ private:
 
 class TileWorker : TileParts {
 public:
-    TileWorker(const std::vector<PartView>& parts, const TriangleBins& bins, int side, Fill fill,
-               const CoverageEngine& engine)
-        : TileParts(parts, bins, side, fill), cover_by_vectors_(engine.cover_by_vectors) {}
+    TileWorker(const std::vector<PartView>& parts, const TriangleBins& bins, int side, const CoverageEngine& engine)
+        : TileParts(parts, bins, side), cover_by_vectors_(engine.cover_by_vectors) {}
 
     /// `slot`: the place of `out` among the results of a block.
     void work(uint32_t index, uint32_t slot, Scratch& s, TileResult& out) const {
@@ -77,7 +76,7 @@ public:
         if (s.rule)
             if (const std::vector<HalfDoubt> doubts = s.rule->list(s.tile, out.rule_bricks, out.owned, out.mixed);
                 !doubts.empty())
-                TileHalves(parts_, bins_, side_, fill_).decide(doubts, index, *s.rule, s.vertices, out.rule_bricks);
+                TileHalves(parts_, bins_, side_).decide(doubts, index, *s.rule, s.vertices, out.rule_bricks);
         s.seconds.order += lap();
     }
 
@@ -121,15 +120,13 @@ private:
     }
 
     void add_solid(const PartView& part, const Window& window, Scratch& s) const {
-        const double* f = part.frame;
-        auto whole = [&](int i) { return int64_t(snap(f[i], part.object)); };
         int64_t claimed = 0;
         if (part.kind == PartKind::box)
-            claimed = claim_convex(s.tile, s.rule.get(), window, box_of(part), fills(fill_), part.material);
+            claimed = claim_convex(s.tile, s.rule.get(), window, box_of(part), fills(part.fill), part.material);
         else if (part.kind == PartKind::ball)
-            claimed = claim_convex(s.tile, s.rule.get(), window, ball_of(part), fills(fill_), part.material);
+            claimed = claim_convex(s.tile, s.rule.get(), window, ball_of(part), fills(part.fill), part.material);
         else
-            claimed = claim_convex(s.tile, s.rule.get(), window, Ellipsoid(f), fills(fill_), part.material);
+            claimed = claim_convex(s.tile, s.rule.get(), window, Ellipsoid(part.frame), fills(part.fill), part.material);
         s.object_voxels[part.object] += claimed;
     }
 
@@ -143,7 +140,7 @@ private:
         std::optional<CappedSurface> own;
         const CappedSurface* capped = capped_of(index, *vertices, own);
         s.seconds.holes += lap();
-        if (fills(fill_))
+        if (fills(part.fill))
             cover<true>(part, analysis, capped, *vertices, triangles, window, part.rule != Rule::touch, s.surface);
         else
             cover<false>(part, analysis, capped, *vertices, triangles, window, false, s.surface);
@@ -152,10 +149,10 @@ private:
         if (s.surface.empty() && !has_holes)
             return;
         const uint8_t interior = part.material != 0 ? part.material : part.mesh->materials[0];
-        const Claim claim = !fills(fill_) ? s.fill.claim_shell(s.tile, s.surface)
-                            : has_holes   ? s.fill.claim_capped_solid(s.tile, s.surface, interior, capped->cap_winding,
-                                                                      analysis.box, window)
-                                          : s.fill.claim_solid(s.tile, s.surface, interior);
+        const Claim claim = !fills(part.fill) ? s.fill.claim_shell(s.tile, s.surface)
+                            : has_holes ? s.fill.claim_capped_solid(s.tile, s.surface, interior, capped->cap_winding,
+                                                                    analysis.box, window)
+                                        : s.fill.claim_solid(s.tile, s.surface, interior);
         s.object_voxels[part.object] += claim.voxels;
         s.overlaps_itself[index] |= !claim.simple;
         if (has_holes && capped->hole_caps->opening > kNotedOpening) {
@@ -206,6 +203,9 @@ private:
                 else
                     cover_triangle<false>(a, b, c, window, analysis.inverted, receiver);
             };
+            const bool by_vectors = cover_by_vectors_ != nullptr &&
+                                    (part.material != 0 || !mesh.rasters.has_raster(t)) && fits_vectors(a, b, c);
+            Wanted wanted{counts && Cross && !has_rule};
             if (Cross && has_rule) {
                 if (is_shell_only) {
                     HeldSurface held(surface);
@@ -214,7 +214,9 @@ private:
                     CrossingsAlone crossings(surface);
                     if (counts) {
                         find_centres<true>(a, b, c, window, crossings);
-                        add_pieces(a, b, c, window, surface);
+                        wanted.pieces = by_vectors && fits_pieces(a, b, c, window.top);
+                        if (!wanted.pieces)
+                            add_pieces(a, b, c, window, surface);
                     }
                 } else if (counts && !has_caps) {
                     find_centres<true>(a, b, c, window, surface);
@@ -224,11 +226,10 @@ private:
                         cross_triangle(a, b, c, window, surface);
                 }
             }
-            if (part.material != 0 || !mesh.rasters.has_raster(t)) {
-                if (cover_by_vectors_ != nullptr && fits_vectors(a, b, c))
-                    cover_by_vectors_(a, b, c, window, counts && Cross && !has_rule, surface);
-                else
-                    cover_with(surface);
+            if (by_vectors) {
+                cover_by_vectors_(a, b, c, window, wanted, surface);
+            } else if (part.material != 0 || !mesh.rasters.has_raster(t)) {
+                cover_with(surface);
             } else {
                 const TriangleRaster raster(a, reversed ? c : b, reversed ? b : c, mesh.rasters, t); // as authored
                 RasterSurface rastered(surface, raster);

@@ -2,8 +2,8 @@
 
 #include "../work/stage_seconds.h"
 
-#include <unordered_map>
-#include <unordered_set>
+#include <map>
+#include <set>
 
 namespace voxrt::voxelize {
 namespace {
@@ -41,7 +41,7 @@ Bounds solid_bounds(const PartView& part) {
 /// Analyses parts and lists their triangles by tile, unsorted.
 class PartBinning {
 public:
-    PartBinning(const Tiling& tiling, Fill fill) : tiling_(tiling), fill_(fill) {}
+    explicit PartBinning(const Tiling& tiling) : tiling_(tiling) {}
 
     /// Adds one mesh part. `run(count, job)` calls job(index) for each index; `emit()` makes the next list of entries,
     /// in authored order.
@@ -55,7 +55,7 @@ public:
         if (shared != nullptr) {
             sums = instance_sums(*shared, part);
             if (stays_whole(sums.bounds, triangle_count)) {
-                analyze_part(analysis, part, sums, shared, fill_);
+                analyze_part(analysis, part, sums, shared, part.fill);
                 list_whole(emit(), sums.bounds, index);
                 return;
             }
@@ -77,7 +77,7 @@ public:
         });
         for (const TriangleSums& chunk : chunk_sums)
             sums.add(chunk);
-        analyze_part(analysis, part, sums, shared, fill_);
+        analyze_part(analysis, part, sums, shared, part.fill);
         if (analysis.hole_caps)
             analysis.capped =
                 std::make_unique<CappedSurface>(analysis.hole_caps, [&](uint32_t v) { return analysis.vertices[v]; });
@@ -131,7 +131,6 @@ private:
     }
 
     const Tiling& tiling_;
-    Fill fill_;
 };
 
 struct Wanted {
@@ -139,29 +138,34 @@ struct Wanted {
     bool operator()(const PartView& part) const { return objects.empty() || objects[part.object] != 0; }
 };
 
-using SharedMeshes = std::unordered_map<const MeshView*, SharedMesh>;
+/// A mesh, and the fill of the parts that share its analysis.
+using MeshUse = std::pair<const MeshView*, Fill>;
+
+MeshUse use_of(const PartView& part) { return {part.mesh, part.fill}; }
+
+using SharedMeshes = std::map<MeshUse, SharedMesh>;
 
 /// The meshes of several parts.
-SharedMeshes analyze_instanced(const std::vector<PartView>& parts, const Wanted& wanted, Fill fill,
-                               const Workers& workers) {
-    std::unordered_map<const MeshView*, std::pair<size_t, uint32_t>> uses; // how many, and the first object
+SharedMeshes analyze_instanced(const std::vector<PartView>& parts, const Wanted& wanted, const Workers& workers) {
+    std::map<MeshUse, std::pair<size_t, uint32_t>> uses; // how many, and the first object
     SharedMeshes shared;
     for (const PartView& part : parts)
         if (part.kind == PartKind::mesh && part.mesh->triangle_count() > 0) {
-            auto& [count, object] = uses.try_emplace(part.mesh, 0, part.object).first->second;
+            auto& [count, object] = uses.try_emplace(use_of(part), 0, part.object).first->second;
             if (++count == 2)
-                shared.try_emplace(part.mesh);
+                shared.try_emplace(use_of(part));
         }
-    std::unordered_set<const MeshView*> needed;
+    std::set<MeshUse> needed;
     for (const PartView& part : parts)
         if (wanted(part))
-            needed.insert(part.mesh);
+            needed.insert(use_of(part));
     std::vector<SharedMeshes::value_type*> entries;
     for (auto& entry : shared)
         if (needed.contains(entry.first))
             entries.push_back(&entry);
     workers.run(entries.size(), [&](size_t job, int) {
-        entries[job]->second = analyze_shared(*entries[job]->first, uses.at(entries[job]->first).second, fill);
+        auto& [use, found] = *entries[job];
+        found = analyze_shared(*use.first, uses.at(use).second, use.second);
     });
     return shared;
 }
@@ -192,16 +196,16 @@ void sort_by_tile(TriangleBins& bins, std::vector<std::vector<TileEntry>>& lists
 } // namespace
 
 TriangleBins bin_triangles(const std::vector<PartView>& parts, std::span<const uint8_t> wanted_objects, int side,
-                           Fill fill, const Workers& workers) {
+                           const Workers& workers) {
     const Wanted wanted{wanted_objects};
     const Tiling tiling(side);
-    const PartBinning binning(tiling, fill);
+    const PartBinning binning(tiling);
     TriangleBins bins;
     bins.tiles_per_side = tiling.tiles_per_side();
     bins.meshes.resize(parts.size());
-    const SharedMeshes shared = analyze_instanced(parts, wanted, fill, workers);
+    const SharedMeshes shared = analyze_instanced(parts, wanted, workers);
     auto shared_of = [&](const PartView& part) {
-        const auto found = shared.find(part.mesh);
+        const auto found = shared.find(use_of(part));
         return found == shared.end() ? nullptr : &found->second;
     };
     auto is_large = [](const PartView& part) {

@@ -20,9 +20,8 @@ struct TriangleBins {
 };
 
 /// Analyses and bins the parts for a grid of `side` voxels. `wanted_objects`: by object, 0 where it is left out; empty
-/// for all. `fill`: find what open parts need to be filled. Throws OutOfRange, and std::length_error where the tiles
-/// would list 2^32 triangles or more.
+/// for all. Throws OutOfRange, and std::length_error where the tiles would list 2^32 triangles or more.
 TriangleBins bin_triangles(const std::vector<PartView>& parts, std::span<const uint8_t> wanted_objects, int side,
-                           Fill fill, const Workers& workers);
+                           const Workers& workers);
 
 } // namespace voxrt::voxelize

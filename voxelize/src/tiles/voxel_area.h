@@ -24,46 +24,55 @@ inline TriangleShare share_of(const SolidTriangle& t, const std::array<int, 3>& 
         if (low > (voxel[i] + 1) * kUnit || high < voxel[i] * kUnit)
             return {};
     }
-    std::array<std::array<double, 3>, 10> polygon, next;
+    using Polygon = std::array<std::array<double, 3>, 10>;
+    Polygon buffers[2];
+    Polygon* current = &buffers[0];
+    Polygon* next = &buffers[1];
     std::array<double, 3> moved{};
     int count = 3;
     for (size_t i = 0; i < 3; ++i) {
         const int64_t at[3] = {t[i].x, t[i].y, t[i].z};
         for (size_t axis = 0; axis < 3; ++axis)
-            polygon[i][axis] = double(at[axis] - voxel[axis] * kUnit) / kUnit;
+            (*current)[i][axis] = double(at[axis] - voxel[axis] * kUnit) / kUnit;
     }
     for (size_t axis = 0; axis < 3; ++axis) {
-        const double low = std::min({polygon[0][axis], polygon[1][axis], polygon[2][axis]});
-        const double high = std::max({polygon[0][axis], polygon[1][axis], polygon[2][axis]});
+        const double low = std::min({(*current)[0][axis], (*current)[1][axis], (*current)[2][axis]});
+        const double high = std::max({(*current)[0][axis], (*current)[1][axis], (*current)[2][axis]});
         if (low != high || low != std::floor(low))
             continue;
         const size_t j = (axis + 1) % 3, k = (axis + 2) % 3;
-        const auto across = [&](size_t i, size_t of) { return polygon[i][of] - polygon[0][of]; };
+        const auto across = [&](size_t i, size_t of) { return (*current)[i][of] - (*current)[0][of]; };
         const bool upwards = across(1, j) * across(2, k) > across(1, k) * across(2, j);
         if (coverage::layer_behind(voxel[axis] + int(low), upwards != inverted, top) != voxel[axis])
             return {};
         moved[axis] = low - 0.5;
         for (size_t i = 0; i < 3; ++i)
-            polygon[i][axis] = 0.5;
+            (*current)[i][axis] = 0.5;
     }
     for (size_t axis = 0; axis < 3; ++axis)
         for (const double plane : {0.0, 1.0}) {
+            const auto inwards = [&](const std::array<double, 3>& p) { return plane == 0 ? p[axis] : 1 - p[axis]; };
+            if (std::all_of(current->begin(), current->begin() + count, [&](auto& p) { return inwards(p) >= 0; }))
+                continue;
             int kept = 0;
             for (int i = 0; i < count; ++i) {
-                const auto &p = polygon[size_t(i)], &q = polygon[size_t(i + 1 == count ? 0 : i + 1)];
-                const double a = plane == 0 ? p[axis] : 1 - p[axis], b = plane == 0 ? q[axis] : 1 - q[axis];
+                const auto &p = (*current)[size_t(i)], &q = (*current)[size_t(i + 1 == count ? 0 : i + 1)];
+                const double a = inwards(p), b = inwards(q);
                 if (a >= 0)
-                    next[size_t(kept++)] = p;
+                    (*next)[size_t(kept++)] = p;
                 if ((a < 0) != (b < 0) && a != 0 && b != 0) {
-                    auto& met = next[size_t(kept++)];
+                    auto& met = (*next)[size_t(kept++)];
                     for (size_t i = 0; i < 3; ++i)
                         met[i] = p[i] + (q[i] - p[i]) * (a / (a - b));
                     met[axis] = plane;
                 }
             }
+            if (kept < 3)
+                return {};
             count = kept;
-            polygon = next;
+            std::swap(current, next);
         }
+    const Polygon& polygon = *current;
     std::array<double, 3> sums{}, middle{};
     for (int i = 2; i < count; ++i)
         for (size_t axis = 0; axis < 3; ++axis) {

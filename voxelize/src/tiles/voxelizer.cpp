@@ -3,101 +3,14 @@
 #include "../rules/rule_voxels.h"
 #include "../rules/thin_parts.h"
 #include "../vectors/instruction_sets.h"
-#include "tile_areas.h"
+#include "block_areas.h"
+#include "gathered_tiles.h"
 #include "tile_worker.h"
 
-#include <numeric>
 #include <optional>
 
 namespace voxrt::voxelize {
 namespace {
-
-/// Adds the octant of a whole cube. Eight equal octants in a row that share a parent become the parent.
-void push_cube(SparseVoxels& out, uint64_t code, uint8_t level, uint8_t material) {
-    auto& codes = out.octant_codes;
-    auto& levels = out.octant_levels;
-    auto& materials = out.octant_materials;
-    codes.push_back(code);
-    levels.push_back(level);
-    materials.push_back(material);
-    while (codes.size() >= 8 && (codes.back() & 7) == 7) {
-        const size_t first = codes.size() - 8;
-        for (size_t i = first; i < codes.size(); ++i)
-            if (levels[i] != levels.back() || materials[i] != materials.back() || codes[i] >> 3 != codes.back() >> 3)
-                return;
-        codes.resize(first + 1);
-        levels.resize(first + 1);
-        materials.resize(first + 1);
-        codes[first] >>= 3;
-        ++levels[first];
-    }
-}
-
-/// Appends the octants of all runs. Those of a cube are joined already.
-void gather_octants(const std::vector<TileResult>& tiles, const std::vector<CubeRun>& runs, SparseVoxels& out) {
-    size_t most = 0;
-    for (const CubeRun& run : runs)
-        most += run.octants_to - run.octants_from;
-    out.octant_codes.reserve(most);
-    out.octant_levels.reserve(most);
-    out.octant_materials.reserve(most);
-    const auto append = [](auto& to, const auto& from, const CubeRun& run) {
-        to.insert(to.end(), from.begin() + run.octants_from, from.begin() + run.octants_to);
-    };
-    for (const CubeRun& run : runs) {
-        const TileResult& tile = tiles[run.tile];
-        const uint32_t i = run.octants_from;
-        if (i + 1 == run.octants_to && tile.octant_levels[i] == kCubeLevel) {
-            push_cube(out, tile.octant_codes[i], kCubeLevel, tile.octant_materials[i]);
-        } else {
-            append(out.octant_codes, tile.octant_codes, run);
-            append(out.octant_levels, tile.octant_levels, run);
-            append(out.octant_materials, tile.octant_materials, run);
-        }
-    }
-}
-
-/// Lays the bricks and octants of all tiles out one after another.
-void gather(const std::vector<TileResult>& tiles, SparseVoxels& out, const Workers& workers) {
-    std::vector<CubeRun> runs;
-    for (const TileResult& tile : tiles)
-        runs.insert(runs.end(), tile.runs.begin(), tile.runs.end());
-    std::sort(runs.begin(), runs.end(), [](const CubeRun& a, const CubeRun& b) { return a.code < b.code; });
-    gather_octants(tiles, runs, out);
-
-    // Rows keep the order of their bricks.
-    std::vector<size_t> brick_starts, row_starts;
-    size_t bricks = 0, rows = 0;
-    for (const CubeRun& run : runs) {
-        brick_starts.push_back(bricks);
-        row_starts.push_back(rows);
-        bricks += run.bricks_to - run.bricks_from;
-        rows += run.rows;
-    }
-    out.brick_codes.resize(bricks);
-    out.brick_masks.resize(bricks);
-    out.brick_materials.resize(bricks);
-    out.brick_rows.resize(bricks);
-    out.cells.resize(rows);
-    constexpr size_t kRuns = 64; // per job
-    workers.run((runs.size() + kRuns - 1) / kRuns, [&](size_t job, int) {
-        for (size_t r = job * kRuns; r < std::min(runs.size(), (job + 1) * kRuns); ++r) {
-            const CubeRun& run = runs[r];
-            const TileResult& tile = tiles[run.tile];
-            size_t to = brick_starts[r], row = row_starts[r];
-            for (uint32_t i = run.bricks_from; i < run.bricks_to; ++i, ++to) {
-                out.brick_codes[to] = tile.brick_codes[i];
-                out.brick_masks[to] = tile.brick_masks[i];
-                out.brick_materials[to] = tile.brick_materials[i];
-                out.brick_rows[to] = -1;
-                if (tile.brick_rows[i] >= 0) {
-                    out.brick_rows[to] = int32_t(row);
-                    out.cells[row++] = tile.cells[tile.brick_rows[i]];
-                }
-            }
-        }
-    });
-}
 
 /// Bits 0, 2, 4 … of a Morton code in two dimensions.
 uint32_t every_other_bit(uint64_t code) {
@@ -125,13 +38,14 @@ void tally_objects(const std::vector<PartView>& parts, std::vector<std::unique_p
 }
 
 /// Sets the voxels, modes and notes of all objects.
-void report_objects(const std::vector<PartView>& parts, Fill fill, const TriangleBins& bins,
+void report_objects(const std::vector<PartView>& parts, const TriangleBins& bins,
                     const std::vector<ObjectTally>& tallies, SparseVoxels& out) {
     const size_t objects = tallies.size();
     out.object_voxels.resize(objects);
     out.object_modes.resize(objects);
     out.object_notes.assign(objects, ObjectNotes{});
     std::vector<ObjectFindings> found(objects);
+    std::vector<Fill> fill_of(objects, Fill::solid);
     for (size_t i = 0; i < objects; ++i) {
         out.object_voxels[i] = tallies[i].voxels;
         found[i].overlaps_itself = tallies[i].overlaps_itself != 0;
@@ -139,6 +53,7 @@ void report_objects(const std::vector<PartView>& parts, Fill fill, const Triangl
     for (size_t p = 0; p < parts.size(); ++p) {
         const MeshAnalysis& mesh = bins.meshes[p];
         ObjectFindings& object = found[parts[p].object];
+        fill_of[parts[p].object] = parts[p].fill;
         object.has_boundary |= parts[p].kind == PartKind::mesh && !mesh.closed;
         object.has_open_enclosure |= mesh.hole_caps && mesh.hole_caps->has_open_enclosure;
         if (mesh.orientation) {
@@ -151,20 +66,20 @@ void report_objects(const std::vector<PartView>& parts, Fill fill, const Triangl
         }
     }
     for (size_t i = 0; i < objects; ++i) {
-        out.object_modes[i] = uint8_t(object_mode(fill, found[i]));
+        out.object_modes[i] = uint8_t(object_mode(fill_of[i], found[i]));
         out.object_notes[i][kMostlyFilled] = tallies[i].inside_of_open > tallies[i].shell_of_open;
     }
 }
 
 } // namespace
 
-SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads, Thin thin,
+SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, int threads, Thin thin,
                       const std::string& instructions) {
     SparseVoxels all;
     all.depth = unsigned(depth);
     all.clear();
     SparseVoxels report = voxelize_in_blocks(
-        depth, parts, objects, fill, threads, 1 << depth, [&](SparseVoxels&& block) { all = std::move(block); }, thin,
+        depth, parts, objects, threads, 1 << depth, [&](SparseVoxels&& block) { all = std::move(block); }, thin,
         instructions);
     all.object_voxels = std::move(report.object_voxels);
     all.object_modes = std::move(report.object_modes);
@@ -173,9 +88,9 @@ SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t obje
     return all;
 }
 
-SparseVoxels voxelize_in_blocks(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads,
+SparseVoxels voxelize_in_blocks(int depth, const std::vector<PartView>& parts, size_t objects, int threads,
                                 int block_side, const TakeBlock& take, Thin thin, const std::string& instructions) {
-    BlockVoxelizer voxelizer(depth, parts, objects, fill, threads, thin);
+    BlockVoxelizer voxelizer(depth, parts, objects, threads, thin);
     voxelizer.use_instructions(instructions);
     const std::vector<ColumnBlock> blocks = voxelizer.blocks(block_side);
     std::vector<ObjectTally> tallies(objects);
@@ -189,8 +104,8 @@ SparseVoxels voxelize_in_blocks(int depth, const std::vector<PartView>& parts, s
 }
 
 struct BlockVoxelizer::State {
-    State(int depth, std::vector<PartView> scene_parts, size_t object_count, Fill how, Thin thin_parts, int threads)
-        : depth(unsigned(depth)), side(1 << depth), parts(std::move(scene_parts)), objects(object_count), fill(how),
+    State(int depth, std::vector<PartView> scene_parts, size_t object_count, Thin thin_parts, int threads)
+        : depth(unsigned(depth)), side(1 << depth), parts(std::move(scene_parts)), objects(object_count),
           thin(thin_parts), workers(threads), scratch(size_t(workers.threads())) {}
 
     TileRange tiles_of(const ColumnBlock& block) const {
@@ -214,7 +129,7 @@ struct BlockVoxelizer::State {
                                     bool volumes = false) {
         lap();
         std::vector<TileResult> found(tiles.size());
-        const TileWorker worker(parts, bins, side, fill, engine);
+        const TileWorker worker(parts, bins, side, engine);
         workers.run(tiles.size(), [&](size_t job, int thread) {
             if (!scratch[size_t(thread)])
                 scratch[size_t(thread)] = std::make_unique<Scratch>(side, objects, parts.size(), has_rule);
@@ -259,43 +174,6 @@ struct BlockVoxelizer::State {
         return found;
     }
 
-    /// The areas of surface in voxels, by Morton code.
-    SurfaceAreas areas_of(std::span<const uint64_t> codes) {
-        const auto tile_of = [this](uint64_t code) {
-            return gather_bits(code >> 1) / kTileSide * uint32_t(bins.tiles_per_side) + gather_bits(code) / kTileSide;
-        };
-        std::vector<uint32_t> order(codes.size()); // by tile
-        std::iota(order.begin(), order.end(), 0u);
-        std::stable_sort(order.begin(), order.end(),
-                         [&](uint32_t a, uint32_t b) { return tile_of(codes[a]) < tile_of(codes[b]); });
-        std::vector<uint64_t> sorted(codes.size());
-        std::vector<size_t> starts; // of tiles
-        for (size_t i = 0; i < codes.size(); ++i) {
-            sorted[i] = codes[order[i]];
-            if (i == 0 || tile_of(sorted[i]) != tile_of(sorted[i - 1]))
-                starts.push_back(i);
-        }
-        starts.push_back(codes.size());
-        std::vector<SurfaceAreas> found(starts.size() - 1);
-        const TileAreas tiles(parts, bins, side, fill);
-        workers.run(found.size(), [&](size_t job, int thread) {
-            const std::span<const uint64_t> own(sorted.data() + starts[job], starts[job + 1] - starts[job]);
-            if (!scratch[size_t(thread)])
-                scratch[size_t(thread)] = std::make_unique<Scratch>(side, objects, parts.size(), has_rule);
-            tiles.find_areas(tile_of(own[0]), own, scratch[size_t(thread)]->vertices, found[job]);
-        });
-        std::vector<std::span<const MaterialArea>> rows(codes.size());
-        for (size_t job = 0; job < found.size(); ++job)
-            for (size_t i = starts[job]; i < starts[job + 1]; ++i)
-                rows[order[i]] = found[job].at(i - starts[job]);
-        SurfaceAreas all;
-        for (const auto& row : rows) {
-            all.areas.insert(all.areas.end(), row.begin(), row.end());
-            all.end_voxel();
-        }
-        return all;
-    }
-
     /// The voxels of a block by the rule.
     SparseVoxels ruled(const ColumnBlock& block, std::vector<ObjectTally>& tallies) {
         std::vector<TileResult> found = results(occupied(block), tallies);
@@ -330,10 +208,12 @@ struct BlockVoxelizer::State {
         const TileRange range = tiles_of(block);
         const auto brick = [](int tile) { return uint32_t(tile) * kTileBricks; };
         std::vector<int64_t> lost(objects, 0);
+        const TileAreas tiles(parts, bins, side);
         apply_rule(
             voxels, beside.empty() ? voxels : around, std::move(findings),
             {brick(range.x0), brick(range.x1 + 1), brick(range.y0), brick(range.y1 + 1)}, thin,
-            [this](std::span<const uint64_t> codes) { return areas_of(codes); }, lost, workers);
+            [&](std::span<const uint64_t> codes) { return find_areas(tiles, bins.tiles_per_side, codes, workers); },
+            lost, workers);
         for (size_t i = 0; i < objects; ++i)
             tallies[i].voxels -= lost[i];
         seconds.fill += lap();
@@ -344,7 +224,6 @@ struct BlockVoxelizer::State {
     int side;
     std::vector<PartView> parts;
     size_t objects;
-    Fill fill;
     Thin thin;
     bool has_rule = false; // some part has another rule than `touch`
     CoverageEngine engine = coverage_engines().front();
@@ -355,13 +234,13 @@ struct BlockVoxelizer::State {
     StageSeconds seconds, before;
 };
 
-BlockVoxelizer::BlockVoxelizer(int depth, std::vector<PartView> parts, size_t objects, Fill fill, int threads,
-                               Thin thin, std::span<const uint8_t> wanted)
-    : state_(std::make_unique<State>(depth, std::move(parts), objects, fill, thin, threads)) {
+BlockVoxelizer::BlockVoxelizer(int depth, std::vector<PartView> parts, size_t objects, int threads, Thin thin,
+                               std::span<const uint8_t> wanted)
+    : state_(std::make_unique<State>(depth, std::move(parts), objects, thin, threads)) {
     State& s = *state_;
     for (const PartView& part : s.parts)
         s.has_rule |= part.rule != Rule::touch;
-    s.bins = bin_triangles(s.parts, wanted, s.side, fill, s.workers);
+    s.bins = bin_triangles(s.parts, wanted, s.side, s.workers);
     s.seconds.bin = s.bins.seconds;
     s.seconds.analysis = s.lap() - s.bins.seconds;
 }
@@ -431,15 +310,17 @@ SparseVoxels BlockVoxelizer::report(const std::vector<ObjectTally>& tallies) con
     SparseVoxels out;
     out.depth = state_->depth;
     out.clear();
-    report_objects(state_->parts, state_->fill, state_->bins, tallies, out);
+    report_objects(state_->parts, state_->bins, tallies, out);
     return out;
 }
 
 ObjectVolumes find_volumes(int depth, std::vector<PartView> parts, size_t objects, int threads,
                            const std::string& instructions) {
-    for (PartView& part : parts)
+    for (PartView& part : parts) {
         part.rule = Rule::half;
-    BlockVoxelizer voxelizer(depth, parts, objects, Fill::solid, threads);
+        part.fill = Fill::solid;
+    }
+    BlockVoxelizer voxelizer(depth, parts, objects, threads);
     voxelizer.use_instructions(instructions);
     return voxelizer.volumes();
 }

@@ -8,7 +8,7 @@
 //
 //     const MeshView mesh{positions, triangles, materials};            // spans, borrowed
 //     const double frame[12] = {s, 0, 0, x, 0, s, 0, y, 0, 0, s, z};   // mesh to grid space, in 1/4096 voxel
-//     const SparseVoxels voxels = voxelize(8, {{.mesh = &mesh, .frame = frame}}, 1, Fill::solid, 0);
+//     const SparseVoxels voxels = voxelize(8, {{.mesh = &mesh, .frame = frame}}, 1, 0);
 //     const std::vector<octree::Word> words = octree::build(voxels.view(), 0);
 //
 // The grid is cut into tiles of 64 x 64 columns over its whole height. A column's voxels depend on that column's
@@ -32,10 +32,10 @@
 #include "../grid/sparse_voxels.h"
 #include "../rules/rule.h"
 #include "../rules/voxel_volume.h"
-#include "../scene/fill.h"
 #include "../scene/object_mode.h"
 #include "../scene/parts.h"
 #include "../work/interrupt.h"
+#include "../work/large_vector.h"
 
 #include <functional>
 #include <memory>
@@ -46,22 +46,23 @@ namespace voxrt::voxelize {
 
 /// Voxelizes `parts`, ascending by object, on a grid of 2^depth voxels per side.
 ///
-/// `depth` is 1 … 16, `objects` is above the object of every part. `fill`: fill.h. `thin`: rule.h. `threads`: 0 takes
+/// `depth` is 1 … 16, `objects` is above the object of every part. `thin`: rule.h. `threads`: 0 takes
 /// as many as the machine has; the result does not depend on it. `instructions`: one of the processor's instruction
 /// sets (vector_coverage.h), or empty for the fastest; all give the same voxels. The arguments are not checked. Throws
 /// OutOfRange (parts.h), std::length_error where the tiles would list 2^32 triangles or more, std::invalid_argument
 /// where the processor has no such instructions, and what the caller's interrupt check throws (interrupt.h).
-SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads,
+SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, int threads,
                       Thin thin = Thin::keep, const std::string& instructions = {});
 
 /// Which part of each voxel with surface an object fills, whatever other objects there are.
 struct ObjectVolumes {
-    std::vector<VoxelVolume> voxels; // by object
+    LargeVector<VoxelVolume> voxels; // by object
     std::vector<int64_t> whole;      // by object: voxels that it fills and that have no surface of it
     std::vector<uint8_t> known;      // by object: 0 where it has surfaces with openings, balls or ellipsoids
 };
 
-/// Finds the volumes of objects. Arguments and errors are those of voxelize(); the rules of parts do not matter.
+/// Finds the volumes of objects. Arguments and errors are those of voxelize(); the rules and fills of parts do not
+/// matter.
 ObjectVolumes find_volumes(int depth, std::vector<PartView> parts, size_t objects, int threads,
                            const std::string& instructions = {});
 
@@ -71,7 +72,7 @@ using TakeBlock = std::function<void(SparseVoxels&&)>;
 /// The same block by block: squares of `block_side` columns (a multiple of 64), over the grid's whole height, in Morton
 /// order. Only one block's voxels are in memory at a time. `take` is called for blocks with geometry; octree::Assembly
 /// joins their octrees. Returns what became of the objects, without voxels.
-SparseVoxels voxelize_in_blocks(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads,
+SparseVoxels voxelize_in_blocks(int depth, const std::vector<PartView>& parts, size_t objects, int threads,
                                 int block_side, const TakeBlock& take, Thin thin = Thin::keep,
                                 const std::string& instructions = {});
 
@@ -100,8 +101,8 @@ struct ObjectTally {
 class BlockVoxelizer {
 public:
     /// `wanted`: by object, 0 where it is left out, for blocks that it does not reach; empty for all objects.
-    BlockVoxelizer(int depth, std::vector<PartView> parts, size_t objects, Fill fill, int threads,
-                   Thin thin = Thin::keep, std::span<const uint8_t> wanted = {});
+    BlockVoxelizer(int depth, std::vector<PartView> parts, size_t objects, int threads, Thin thin = Thin::keep,
+                   std::span<const uint8_t> wanted = {});
     ~BlockVoxelizer();
 
     /// Sets the number of threads; 0 takes as many as the machine has.

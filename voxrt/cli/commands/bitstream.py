@@ -75,12 +75,11 @@ def _make_scene(options: BitstreamCommand, source: Path) -> None:
     blob, budget = read_memory(source, options.depth, placed)
     features = {name for name in ("light", "mirrors") if design.core[name.capitalize()]}
     lighting = supported(blob.lighting or voxrt.Lighting(), features)
-    roots = (0,) if blob.animation is None else blob.animation.roots
     fit, size = (fit_frames, SMALL) if design.frame_buffer else (fit_beam, SCREEN)
     with transfer_bar() as progress:
         count = partial(progress, "count cycles")
-        beam = fit(blob.rom, orbit(blob.rom, size, roots=roots), lighting, design.tracer, progress=count)
-    bits = make_bitstream(placed, board_scene(blob), orbit(blob.rom, beam.size, roots=roots), lighting, beam)
+        beam = fit(blob.rom, orbit(blob.rom, size, roots=blob.roots), lighting, design.tracer, progress=count)
+    bits = make_bitstream(placed, board_scene(blob), orbit(blob.rom, beam.size, roots=blob.roots), lighting, beam)
     file = _bits_file(options.output, placed, source.stem)
     report = file.with_suffix(".report.json")
     result = bitstream_result(blob.rom, placed, beam, file, budget)

@@ -60,8 +60,8 @@ def _report(options: BoardCommand) -> None:
         raise UsageError(f"{options.device} is no board; name it as serial:PORT or tcp://BOARD:PORT")
     with board_errors(), transfer_bar() as progress, closing(open_device(options.device, "")) as device:
         registers = dict(device.registers())
-        shown = device.loaded() if isinstance(device, SerialDevice) else None
-        scene = _load_example(device, progress) if shown is None else shown.scene
+        loaded = device.loaded()
+        scene = loaded.scene if loaded is not None and loaded.shown else _load_example(device, progress)
         size = _SIZE[0] - _SIZE[0] % device.identity.width_step, _SIZE[1]
         cameras = cameras_around(scene.depth, size, options.views)
         sends_frames = options.device.startswith(TCP)

@@ -111,14 +111,14 @@ def _unlit(lighting: Lighting, why: str) -> Lighting:
     if not lighting.features:
         return lighting
     warn((voxrt.SceneWarning("light", f"the memory's light is left out: {why}"),))
-    return replace(lighting, on=False, bounces=0)
+    return lighting.within(set())
 
 
 def _with_means(blob: Blob) -> Rom:
     """Return a memory with its mean materials, whether it was built with them or not."""
     if blob.rom.octree.means is not None:
         return blob.rom
-    return with_means(blob.rom, (0,) if blob.animation is None else blob.animation.roots)
+    return with_means(blob.rom, blob.roots)
 
 
 def _refuse_wrong(scene: Path, wrong_pixels: int | None) -> None:
@@ -234,8 +234,7 @@ def _take_path(command: RenderCommand, memory: Rom, options: RenderOptions, file
 
 def _roots(blob: Blob, file: Path, command: RenderCommand) -> tuple[int, ...]:
     """Return the roots of the frames that are asked for."""
-    roots = (0,) if blob.animation is None else blob.animation.roots
-    frame = command.frame
+    roots, frame = blob.roots, command.frame
     if command.turntable or not _is_animated(file):
         blob.frame(frame or 0)  # refuses one that is not there
         return roots[frame or 0 : (frame or 0) + 1]

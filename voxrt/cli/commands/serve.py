@@ -42,7 +42,7 @@ def run(options: ServeCommand) -> None:
     except Refused as refusal:
         raise UsageError(str(refusal)) from refusal
     first = read_scene(options.scenes[0], options.depth) if options.scenes else None
-    named = {name: _files(path) for name, path in scene_names(options.scenes or _examples()).items()}
+    named = {name: scene_files(path) for name, path in scene_names(options.scenes or _examples()).items()}
     library = SceneLibrary(asset_reader(options.depth), named, asset_reader(options.depth, memory_depth=options.depth))
     server = ServerOptions(options.host, options.port, token, options.origin, options.legacy_port)
     opened = open_device(options.device, options.config)
@@ -108,7 +108,7 @@ def read_scene(path: Path, depth: int | None = None) -> Scene:
         raise voxrt.RomError(f"{path}: {error}") from error
 
 
-def _files(path: Path) -> list[Path]:
+def scene_files(path: Path) -> list[Path]:
     """Return the file of a scene, and the manifest of a memory where it has one."""
     manifest = path.with_suffix(".json")
     return [path, manifest] if path.suffix.lower() == ".mem" and manifest.exists() else [path]

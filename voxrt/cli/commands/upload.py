@@ -5,10 +5,10 @@ from __future__ import annotations
 import asyncio
 from contextlib import closing
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import voxrt
-from voxrt.cli.commands.serve import SERIAL, TCP, board_errors, open_device, open_serial_device, read_scene
+from voxrt.cli.commands.serve import SERIAL, TCP, board_errors, open_device, open_serial_device, read_scene, scene_files
 from voxrt.cli.inputs.lighting import supported
 from voxrt.cli.results.board_results import UploadResult
 from voxrt.cli.results.build_results import print_json
@@ -21,17 +21,19 @@ if TYPE_CHECKING:
 
     from voxrt.board.device import Device
     from voxrt.board.scene import Scene
-    from voxrt.board.scene_memory import LoadedScene, Progress
+    from voxrt.board.scene_memory import Progress
     from voxrt.options.board_commands import UploadCommand
 
 
 def run(options: UploadCommand) -> None:
     """Show another scene on a running board: its words are written, read back and compared."""
+    from voxrt.board.scene import MEMORY_SUFFIXES  # noqa: PLC0415 - it imports NumPy
+
     if options.to is None and options.device is None:
         raise UsageError("neither --to nor --device says where the board is; give one of them")
     if options.to is not None and options.device is not None:
         raise UsageError("--to and --device exclude each other; give one of them")
-    if options.rom.suffix.lower() not in {".mem", ".blob"}:
+    if options.rom.suffix.lower() not in MEMORY_SUFFIXES:
         raise UsageError(f"{options.rom}: is no .mem or .blob; build it first: voxrt build {options.rom}")
     scene = read_scene(options.rom)
     with transfer_bar() as progress:
@@ -51,29 +53,21 @@ def run(options: UploadCommand) -> None:
 
 async def _send(path: Path, scene: Scene, url: str, progress: Progress, *, dry_run: bool) -> None:
     from voxrt.board.errors import Refused  # noqa: PLC0415
+    from voxrt.board.scene import check_size  # noqa: PLC0415
     from voxrt.serve.frame_client import open_client  # noqa: PLC0415 - it imports websockets
 
     try:
-        manifest = [path.with_suffix(".json")] if path.suffix.lower() == ".mem" else []
-        files = {file.name: file.read_bytes() for file in (path, *manifest) if file.exists()}
+        files = {file.name: file.read_bytes() for file in scene_files(path)}
     except OSError as error:
         raise voxrt.RomError(f"{path}: {error}") from error
     try:
         async with open_client(url) as client:
-            _check_fit(scene, client.hello["device"])
+            with board_errors():
+                check_size(scene, *(client.hello["device"][key] for key in ("name", "capacity", "depth")))
             await client.take_control()
             await client.upload(files, progress, check_only=dry_run)
     except Refused as refusal:
         raise voxrt.SimulatorError(str(refusal)) from refusal
-
-
-def _check_fit(scene: Scene, board: dict[str, Any]) -> None:
-    words = len(scene.words)
-    if words > board["capacity"] or scene.depth > board["depth"]:
-        raise voxrt.DoesNotFitError(
-            f"{scene.name} has {words} words and {scene.depth} levels, and {board['name']} takes {board['capacity']} "
-            f"and {board['depth']}; build it with a smaller --depth"
-        )
 
 
 def _write_serial(path: Path, scene: Scene, port: str, progress: Progress, *, dry_run: bool) -> None:
@@ -94,17 +88,14 @@ def _write_serial(path: Path, scene: Scene, port: str, progress: Progress, *, dr
             beam = fit_beam(rom, orbit(rom, SCREEN), lighting, tracer, progress=count)
             size, scale = beam.size, beam.scale
         device.prepare_orbit(orbit(rom, size), lighting, scale)
-        _write(scene, device, progress, dry_run=False, loaded=device.loaded())
+        _write(scene, device, progress, dry_run=False)
 
 
-def _write(
-    scene: Scene, device: Device, progress: Progress, *, dry_run: bool, loaded: LoadedScene | None = None
-) -> None:
+def _write(scene: Scene, device: Device, progress: Progress, *, dry_run: bool) -> None:
     from voxrt.board.scene_memory import SceneMemory  # noqa: PLC0415 - only this command needs it
 
-    memory = SceneMemory(device, loaded)
     with board_errors():
         if dry_run:
-            memory.check(scene)
+            SceneMemory(device).check(scene)
         else:
-            memory.load(scene, progress)
+            SceneMemory(device, device.loaded()).load(scene, progress)

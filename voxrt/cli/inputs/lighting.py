@@ -20,9 +20,7 @@ def supported(lighting: voxrt.Lighting, features: AbstractSet[str]) -> voxrt.Lig
     if not missing:
         return lighting
     warn((voxrt.SceneWarning("light", f"left out, since the board has no hardware for it: {', '.join(missing)}"),))
-    return replace(
-        lighting, on=lighting.on and "light" in features, bounces=lighting.bounces if "mirrors" in features else 0
-    )
+    return lighting.within(features)
 
 
 def merge_lighting(authored: voxrt.Lighting | None, options: LightOptions) -> voxrt.Lighting:

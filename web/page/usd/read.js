@@ -25,6 +25,7 @@ const MOST_PRIMS = 200_000; // of all layers and copies together
 /** @type {[string, string, (fields: Fields, path: string) => boolean][]} kind, subject and test */ const OTHERS = [
   ["collider", "colliders are", ({ apiSchemas = [] }) => apiSchemas.includes("PhysicsCollisionAPI")],
   ["rule", "rules of prims are", (_, path) => path.endsWith(".voxrt:rule")],
+  ["fill", "fills of prims are", (_, path) => path.endsWith(".voxrt:fill")],
   ["collection", "materials bound to collections are", (_, path) => path.includes(".material:binding:collection:")],
 ];
 

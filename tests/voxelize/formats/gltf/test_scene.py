@@ -258,8 +258,9 @@ def test_voxrt_collider_stands_in_for_the_mesh(tmp_path):
     ("extras", "message"),
     [
         ({"voxrt_colider": "box"}, r"nodes\[0\]\.extras\.voxrt_colider: unknown property for voxrt; did you "),
-        ({"voxrt_rule": "center"}, r"nodes\[0\]\.extras\.voxrt_rule: invalid enum value 'center'; correct the"),
-        ({"voxrt_collider": "cone"}, r"nodes\[0\]\.extras\.voxrt_collider: invalid enum value 'cone'; correct the"),
+        ({"voxrt_rule": "center"}, r"nodes\[0\]\.extras\.voxrt_rule: invalid enum value 'center'; use touch"),
+        ({"voxrt_fill": "together"}, r"voxrt_fill: invalid enum value 'together'; use solid, surface, auto$"),
+        ({"voxrt_collider": "cone"}, r"nodes\[0\]\.extras\.voxrt_collider: invalid enum value 'cone'; use box, sphere"),
         ({"voxrt_reflect": "yes"}, r"nodes\[0\]\.extras\.voxrt_reflect: expected `bool \| float`, got `str`"),
         ({"voxrt_material": 3}, r"nodes\[0\]\.extras\.voxrt_material: expected `str \| null`, got `int`"),
     ],
@@ -321,9 +322,12 @@ def test_voxrt_ignore_leaves_an_object_out(tmp_path):
     assert kinds(scene)["ignored"] == 1
 
 
-def test_voxrt_rule_is_the_rule_of_the_object(tmp_path):
+def test_voxrt_rule_and_fill_are_those_of_the_object(tmp_path):
     writer = two_coloured()
-    writer.show(mesh=0, name="own", extras={"voxrt_rule": "centre"})
+    writer.show(mesh=0, name="own", extras={"voxrt_rule": "centre", "voxrt_fill": "surface"})
     writer.show(mesh=0, name="other")
     scene = load(writer.save(tmp_path / "a.glb"))
-    assert [(one.name, one.rule) for one in scene.objects] == [("own", "centre"), ("other", None)]
+    assert [(one.name, one.rule, one.fill) for one in scene.objects] == [
+        ("own", "centre", "surface"),
+        ("other", None, None),
+    ]

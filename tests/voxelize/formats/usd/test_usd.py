@@ -391,3 +391,9 @@ def test_messages_that_differ_in_the_prim_alone_are_one_warning(usd):
     (found,) = [one for one in scene.warnings if one.message.startswith("USD reports")]
     assert found.count == 3
     assert "/part_0" in found.message
+
+
+def test_a_refusal_stays_short_however_long_a_path_is(usd):
+    with pytest.raises(AssetError) as error:
+        usd('def X "a" {\n' * 5000)
+    assert len(str(error.value)) < 1500

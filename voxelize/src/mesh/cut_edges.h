@@ -1,0 +1,20 @@
+// Edges that others meet between their ends: T-junctions.
+//
+// CAD programs write the faces along a seam with vertices that the faces beyond it do not have. The surface closes all
+// the same, so the faces on both sides are to be wound alike. Edges at which an odd number of faces meets are cut where
+// the ends of others lie on them, as far as the rounding of vertices lets one tell. Edges of two faces stay whole: what
+// stands on them may be another part.
+//
+// Cost: a query of a bounding volume hierarchy per such edge; about 100 ns.
+#pragma once
+
+#include "../faces/mesh_edges.h"
+
+#include <optional>
+
+namespace voxrt::voxelize {
+
+/// The edges of the same faces, cut; none where nothing is to be cut. `vertices`: in a lattice.
+std::optional<MeshEdges> cut_edges(const MeshEdges& edges, const std::vector<Vertex>& vertices);
+
+} // namespace voxrt::voxelize
