@@ -130,7 +130,7 @@ def test_colours_at_corners_and_those_that_are_missing(tmp_path):
     scene = load(write(tmp_path / "a.3mf", {"3D/3dmodel.model": model(resources, item(1) + item(2) + item(3))}))
     assert scene.objects[0].mesh.appearance.colours[:, :, :3].tolist() == [[[1, 0, 0], [0, 1, 0], [1, 0, 0]]] * 12
     assert [scene.materials[one.mesh.materials[0]].name for one in scene.objects[1:]] == ["default", "default"]
-    assert kinds(scene) == {"property": 12, "default-material": 24}
+    assert kinds(scene) == {"material-colour": 24}
 
 
 def test_parts_in_another_unit_are_told(tmp_path):

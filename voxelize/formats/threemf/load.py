@@ -148,7 +148,8 @@ class _Reader:
             colours[here], coloured[here] = table[corners], True
         bare = (materials == 0) & ~coloured
         if bare.any():
-            materials[bare] = self._table.default(self._log if self._has_colours else None, int(bare.sum()))
+            without = int((found.properties[bare, 0] < 0).sum())
+            materials[bare] = self._table.default(self._log if self._has_colours else None, without)
         appearance = None
         if coloured.any():
             appearance = appearance_of_corners(found.name, colours, self._opaque_from)
