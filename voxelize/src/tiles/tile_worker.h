@@ -126,7 +126,8 @@ private:
         else if (part.kind == PartKind::ball)
             claimed = claim_convex(s.tile, s.rule.get(), window, ball_of(part), fills(part.fill), part.material);
         else
-            claimed = claim_convex(s.tile, s.rule.get(), window, Ellipsoid(part.frame), fills(part.fill), part.material);
+            claimed =
+                claim_convex(s.tile, s.rule.get(), window, Ellipsoid(part.frame), fills(part.fill), part.material);
         s.object_voxels[part.object] += claimed;
     }
 
