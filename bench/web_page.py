@@ -57,7 +57,7 @@ SETUP_SCRIPT = """
       };
       const cameras = Array.from({ length: frames }, (_, i) => cameraOf((6.28 * i) / frames));
       window.benched = { painter, picture, alone, cameras };
-      done({ workers: painter.workers });
+      done({ workers: Math.min(navigator.hardwareConcurrency, 8) }); // as painter.js has it
     })().catch((error) => done({ problem: String(error) }));
 """
 """Frames with the page's workers, and with one instance on the thread of the page."""
@@ -70,7 +70,7 @@ FRAMES_SCRIPT = """
     const ask = () => painter.changeView({ camera: cameras[sent++], size: [640, 480] });
     const finished = ({ detail }) => {
       times.push(performance.now());
-      picture.show(detail, 1);
+      picture.showBands(detail, 1);
       if (sent < cameras.length) ask();
       else if (times.length === cameras.length) {
         painter.removeEventListener("frame", finished);
@@ -86,7 +86,7 @@ FRAMES_SCRIPT = """
 MODEL_SCRIPT = """
     const { alone, cameras } = window.benched;
     for (const { position, look, right, up } of cameras)
-      alone.with(Int32Array, [...position, ...look, ...right, ...up], (at) =>
+      alone.with([Int32Array], [[...position, ...look, ...right, ...up]], (at) =>
         alone.checked(alone.wasm.vx_render(at, 640, 480, 0, alone.tileRows(480))));
 """
 
@@ -140,7 +140,7 @@ def frame_costs(browser: Browser, name: str, depth: int) -> tuple[int, float, fl
         browser.run(MODEL_SCRIPT)
         page.append((between - start) / FRAMES)
         model.append((processor_seconds() - between) / FRAMES)
-    browser.run("while (window.benched.painter.hands.length) window.benched.painter.hands.pop().stop()")
+    browser.run("window.benched.painter.stop()")
     return found["workers"], max(rates), min(page[1:]), min(model[1:])  # the first compiles
 
 
