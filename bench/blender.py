@@ -3,9 +3,8 @@
 Usage: ``.venv-blender/bin/python bench/blender.py [--write] [--depth 9]``, in the environment of ``make blender-test``.
 The scene has a million triangles in 1,000 instances of one mesh. An edit moves one of them, some beyond the grid's
 border; its picture has at most a quarter of the pixels of a viewport of 960x540, as while one moves things, and then
-all of them. Medians of the wall clock; the
-time of the processor, of all threads together, tells what other work on the machine does to them. ``--write`` puts the
-table into ``bench/results/blender.md`` as well.
+all of them. Medians of the wall clock; the time of the processor, of all threads together, tells what other work on the
+machine does to them. ``--write`` puts the table into ``bench/results/blender.md`` as well.
 """
 
 from __future__ import annotations
