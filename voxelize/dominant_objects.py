@@ -42,13 +42,17 @@ def dominant_objects(scene: Scene, voxels: int, geometry: Geometry) -> tuple[tup
     owners, low, high = _object_bounds(scene, geometry)
     if len(owners) < 2:
         return (), 0.0
-    order = np.argsort(-(high - low).max(axis=1), kind="stable")
+    sides = (high - low).max(axis=1)
+    order = np.argsort(-sides, kind="stable")
     # Row k bounds the objects from place k of that order on.
     lowest = np.minimum.accumulate(low[order][::-1], axis=0)[::-1]
     highest = np.maximum.accumulate(high[order][::-1], axis=0)[::-1]
     widths = (highest - lowest).max(axis=1)
+    narrow = widths[0] * min(_FEWEST_VOXELS / voxels, _NARROW)
     for count in range(1, min(_MOST, len(order) - 1) + 1):
-        if 0 < widths[count] < widths[0] * min(_FEWEST_VOXELS / voxels, _NARROW):
+        if sides[order[count - 1]] < narrow:
+            break  # a small object far from the others is not to blame
+        if 0 < widths[count] < narrow:
             return tuple(scene.objects[owners[row]].name for row in order[:count]), float(widths[count])
     return (), 0.0
 

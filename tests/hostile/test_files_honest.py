@@ -165,6 +165,21 @@ def test_an_object_that_takes_the_grid_is_named(tmp_path):
         voxrt.build(path, ignore=["square9"])
 
 
+@pytest.mark.parametrize(
+    ("apart", "side", "named"),
+    [(600, 1, None), (1, 1, "ground spans 5000 m"), (1, 400, "ground, wide span 5000 m, all other objects 1 m")],
+)
+def test_small_objects_far_apart_do_not_take_the_grid(apart, side, named, tmp_path):
+    """Three squares above a ground of 5000 m: only what is large by itself is named."""
+    lines = ["o ground", "v 0 0 0", "v 5000 0 0", "v 5000 0 5000", "f -3 -2 -1"]
+    for number, (name, wide) in enumerate([("a", 1), ("b", 1), ("wide", side)]):
+        at = 1 + apart * number
+        lines += [f"o {name}", f"v 0 {at} 0", f"v {wide} {at} 0", f"v {wide} {at} {wide}", "f -3 -2 -1"]
+    built = voxrt.build(written(tmp_path, "\n".join(lines) + "\n", "a.obj"), depth=7)
+    found = [one.message for one in built.warnings if one.kind == "dominant-object"]
+    assert [named in message for message in found] == ([True] if named else [])
+
+
 def test_objects_without_voxels_are_named(tmp_path):
     path = written(tmp_path, "o big\n" + TRIANGLE + "o same\n" + TRIANGLE.replace("1 2 3", "-3 -2 -1"), "a.obj")
     (warning,) = (one for one in voxrt.build(path, depth=4).warnings if one.kind == "no-voxels")

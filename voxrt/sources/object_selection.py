@@ -86,8 +86,8 @@ def crowded_out(scene: Scene, grid: Grid, options: BuildOptions) -> tuple[SceneW
         return ()
     whole = grid.size * grid.voxel_size
     message = (
-        f"{', '.join(names)} spans {whole:.4g} m, all other objects {width:.4g} m, so that they get few voxels: "
-        "leave it out with --ignore NAME, or give the grid --bounds"
+        f"{', '.join(names)} {'span' if len(names) > 1 else 'spans'} {whole:.4g} m, all other objects {width:.4g} m, "
+        "so that they get few voxels: leave large ones out with --ignore NAME, or give the grid --bounds"
     )
     return (SceneWarning("dominant-object", message, len(names)),)
 
