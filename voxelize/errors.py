@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+DAMAGED = "check the file in another program, and export it again"
+"""How to mend a file that no program is likely to read."""
+
 
 class AssetError(Exception):
     """An asset file that cannot be loaded. The message is one line: file, place in it, what is wrong, how to fix it.

@@ -13,20 +13,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.errors import DAMAGED, AssetError
 from voxrt.voxelize.formats.external_files import ExternalFiles, asset_name, read_asset
 from voxrt.voxelize.formats.image_file import INSTEAD, decode_image
-from voxrt.voxelize.formats.opacity import OPAQUE_FROM
+from voxrt.voxelize.formats.opacity import OPAQUE_FROM, nothing_shown
+from voxrt.voxelize.formats.xml_elements import need, xml_elements
 from voxrt.voxelize.from_trimesh import trimesh_scene
 from voxrt.voxelize.warning_log import WarningLog
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from voxrt.voxelize.assets import UpAxis
     from voxrt.voxelize.scene import Scene
 
-_DAMAGED = "check the file in another program, and export it again"
 _UP_AXES: dict[str, UpAxis] = {"X_UP": "x", "Y_UP": "y", "Z_UP": "z"}
 
 
@@ -47,11 +45,11 @@ def load_dae(path: str | Path, *, allow_outside: bool = False, opaque_from: floa
     left out. AssetError where it cannot be read, or the extra ``cad`` is not installed.
     """
     path = Path(path)
-    _need(path, "lxml", "collada")
+    need(path, "lxml", "collada")
     data = read_asset(path)
     unit = 1.0
     up: UpAxis = "y"
-    for element in _elements(path, data, "unit", "up_axis"):
+    for element in xml_elements(path, data, "unit", "up_axis"):
         if element.tag.endswith("unit"):
             unit = _metres(path, element.get("meter") or "1")
         else:
@@ -90,23 +88,11 @@ class _Textures:
         return data
 
 
-_DISTRIBUTIONS = {"collada": "pycollada"}  # of modules, where the name is another
-
-
-def _need(path: Path, *modules: str) -> None:
-    for module in modules:
-        try:
-            import_module(module)
-        except ImportError:
-            fix = f"pip install {_DISTRIBUTIONS.get(module, module)}"
-            raise AssetError(path, f"takes {module}, which is not installed", fix=fix) from None
-
-
 def _metres(path: Path, text: str) -> float:
     try:
         return float(text)
     except ValueError:
-        raise AssetError(path, f"has a unit of {text[:24]!r} metres", fix=_DAMAGED) from None
+        raise AssetError(path, f"has a unit of {text[:24]!r} metres", fix=DAMAGED) from None
 
 
 def _loaded(path: Path, data: bytes, kind: str, **options: Any) -> Any:  # noqa: ANN401 - trimesh has no types
@@ -117,7 +103,7 @@ def _loaded(path: Path, data: bytes, kind: str, **options: Any) -> Any:  # noqa:
     except MemoryError:
         raise
     except Exception as error:  # noqa: BLE001 - it raises whatever its parsers do
-        raise AssetError(path, f"trimesh cannot read it ({type(error).__name__})", fix=_DAMAGED) from None
+        raise AssetError(path, f"trimesh cannot read it ({type(error).__name__})", fix=DAMAGED) from None
 
 
 def _scene(
@@ -132,27 +118,9 @@ def _scene(
     try:
         made = trimesh_scene(scene, name=asset_name(path), up=up, unit=unit, opaque_from=opaque_from)
     except KeyError as error:
-        raise AssetError(path, f"shows {error}, which is not in it", fix=_DAMAGED) from None
+        raise AssetError(path, f"shows {error}, which is not in it", fix=DAMAGED) from None
     except (TypeError, ValueError) as error:
-        raise AssetError(path, str(error), fix=_DAMAGED) from None
+        raise AssetError(path, str(error), fix=DAMAGED) from None
     if not any(len(one.mesh.triangles) for one in made.objects):
-        for warning in made.warnings:
-            if warning.kind == "transparent":
-                raise AssetError(path, f"shows nothing: {warning.message}", fix="make its colours opaque")
-        raise AssetError(path, "has no triangles", fix="export it with its surface")
+        raise nothing_shown(path, made.warnings)
     return replace(made, warnings=made.warnings + log.warnings())
-
-
-def _elements(path: Path, text: bytes, *tags: str, event: str = "end") -> Iterator[Any]:
-    etree = import_module("lxml.etree")
-    try:
-        for _, element in etree.iterparse(
-            io.BytesIO(text),
-            events=(event,),
-            tag=[f"{{*}}{tag}" for tag in tags],
-            resolve_entities=False,
-            no_network=True,
-        ):
-            yield element
-    except etree.XMLSyntaxError as error:
-        raise AssetError(path, f"its XML is broken ({' '.join(str(error.msg).split())})", fix=_DAMAGED) from None

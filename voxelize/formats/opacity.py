@@ -1,10 +1,16 @@
-"""From which opacity a surface is solid, and the words for faces that are left out because they are less opaque."""
+"""From which opacity a surface is solid, and the words for what is left out because it is less opaque."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from voxrt.voxelize.errors import AssetError
+
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
+
+    from voxrt.voxelize.errors import SceneWarning
     from voxrt.voxelize.warning_log import WarningLog
 
 OPAQUE_FROM = 0.5
@@ -23,3 +29,11 @@ def log_left_out(log: WarningLog, opacity: float, cutoff: float, opaque_from: fl
     else:
         message = "faces below the opacity threshold of their material were left out"
     log.add("transparent", message, faces)
+
+
+def nothing_shown(path: Path, warnings: Iterable[SceneWarning]) -> AssetError:
+    """Return the error for a file without triangles; it says whether all of them were left out."""
+    for warning in warnings:
+        if warning.kind == "transparent":
+            return AssetError(path, f"shows nothing: {warning.message}", fix="make its colours opaque")
+    return AssetError(path, "has no triangles", fix="export it with its surface")

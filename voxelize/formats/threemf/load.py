@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import replace
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.errors import DAMAGED, AssetError
 from voxrt.voxelize.formats.external_files import asset_name, read_asset
 from voxrt.voxelize.formats.material_table import MaterialTable
 from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
-from voxrt.voxelize.formats.opacity import OPAQUE_FROM
+from voxrt.voxelize.formats.opacity import OPAQUE_FROM, nothing_shown
 from voxrt.voxelize.formats.scene_frame import scene_transform
 from voxrt.voxelize.formats.threemf.model import UNITS, Group, Model, read_model
-from voxrt.voxelize.formats.threemf.package import DAMAGED, Package
+from voxrt.voxelize.formats.threemf.package import Package
+from voxrt.voxelize.formats.xml_elements import need
 from voxrt.voxelize.from_arrays import appearance_of_corners
 from voxrt.voxelize.scene import Scene, SceneObject
 from voxrt.voxelize.warning_log import WarningLog
@@ -40,10 +40,7 @@ def load_3mf(path: str | Path, *, opaque_from: float = OPAQUE_FROM) -> Scene:
     installed.
     """
     path = Path(path)
-    try:
-        import_module("lxml")
-    except ImportError:
-        raise AssetError(path, "takes lxml, which is not installed", fix="pip install lxml") from None
+    need(path, "lxml")
     return _Reader(Package.of(path, read_asset(path)), opaque_from).scene()
 
 
@@ -79,10 +76,7 @@ class _Reader:
             if len(mesh.triangles):
                 objects.append(SceneObject(own, mesh, frame @ one.transform))
         if not objects:
-            for warning in self._log.warnings():
-                if warning.kind == "transparent":
-                    raise AssetError(self._path, f"shows nothing: {warning.message}", fix="make its colours opaque")
-            raise AssetError(self._path, "has no triangles", fix="export it with its surface")
+            raise nothing_shown(self._path, self._log.warnings())
         return Scene(asset_name(self._path), tuple(objects), self._table.materials(), self._log.warnings())
 
     def _model(self, part: str) -> Model:

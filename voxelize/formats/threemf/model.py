@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.errors import DAMAGED, AssetError
 from voxrt.voxelize.formats.scene_frame import FARTHEST, in_range
-from voxrt.voxelize.formats.threemf.package import DAMAGED, part_name
+from voxrt.voxelize.formats.threemf.package import part_name
 from voxrt.voxelize.from_arrays import triangles_of
 
 if TYPE_CHECKING:

@@ -5,17 +5,14 @@ from __future__ import annotations
 import io
 import zipfile
 from dataclasses import dataclass
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.errors import DAMAGED, AssetError
+from voxrt.voxelize.formats.xml_elements import xml_elements
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
-
-DAMAGED = "check the file in another program, and export it again"
-"""How to mend what other programs read neither."""
 
 _FREE_BYTES, _MOST_TIMES = 1 << 26, 64
 """What the parts of a file may unpack to: so many bytes, and so many times its size more."""
@@ -61,18 +58,11 @@ class Package:
 
     def elements(self, part: str, *tags: str, event: str = "end") -> Iterator[Any]:
         """Go through the elements of a part with some tags, of any namespace, as they end."""
-        etree = import_module("lxml.etree")
         try:
-            text = io.BytesIO(self.archive.read(self.names[part]))
-            wanted = [f"{{*}}{tag}" for tag in tags]
-            options: dict[str, Any] = {"resolve_entities": False, "no_network": True}
-            for _, element in etree.iterparse(text, events=(event,), tag=wanted, **options):
-                yield element
-        except etree.XMLSyntaxError as error:
-            problem = f"its XML is broken ({' '.join(str(error.msg).split())})"
-            raise AssetError(self.path, problem, place=part, fix=DAMAGED) from None
+            text = self.archive.read(self.names[part])
         except (zipfile.BadZipFile, OSError, NotImplementedError, RuntimeError, EOFError, ValueError) as error:
             raise _no_package(self.path, type(error).__name__) from None
+        return xml_elements(self.path, text, *tags, event=event, place=part)
 
 
 def part_name(name: str) -> str:
