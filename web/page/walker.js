@@ -12,7 +12,7 @@ import { bodyBox, bodyFor, eyeOf, roomAbove, step } from "./walk.js";
 
 const FIELD_OF_VIEW = 60;
 const RUN = 1.8; // times the pace
-const TURN = 0.0022; // radians per pixel of a locked mouse, whatever the size of the picture
+const TURN = 0.002; // radians per pixel of a locked mouse, as three.js has it
 const UPWARDS = 1; // the axis
 const ROWS = [0.7, 0.65, 0.75, 0.6, 0.8, 0.55, 0.85, 0.5, 0.4, 0.3]; // parts of the picture's height
 const REACH = 6; // heights of the eye to what the camera orbits later
