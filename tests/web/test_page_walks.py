@@ -22,7 +22,7 @@ SIDE = 128
 EYE = SIDE / 12
 """Voxels from the soles to the eye in this world; the rest of a body as in serve/page/walk.js."""
 BODY = np.array([[-0.3, -1.6, -0.3], [0.3, 0.2, 0.3]]) * EYE / 1.6
-TURN = 0.0022
+TURN = 0.002
 
 
 @pytest.fixture(scope="module")
@@ -196,7 +196,7 @@ def test_keys_walk_up_to_walls_and_jump_back_to_the_ground(walk: Walk) -> None:
 
 def test_who_digs_below_falls_and_undo_lifts_again(walk: Walk) -> None:
     browser = walk.browser
-    walk.turn(0, 700)
+    walk.turn(0, 800)
     assert walk.view["pitch"] == pytest.approx(-np.pi / 2, abs=0.05)
     ground = walk.view["eye"][1]
     for _ in range(2):
