@@ -14,13 +14,17 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from voxrt.voxelize.mesh import Mesh
     from voxrt.voxelize.object_proxies import Geometry
     from voxrt.voxelize.scene import Scene, SceneObject
 
 _NEARLY_ALL = 0.99
 _NARROW = 1 / 8
 """A wider bulk keeps enough voxels."""
+
+_BINS = 64
+_BULK_BINS = int(_BINS * _NARROW / 2) + 1
+_SURELY_LESS = 2 * _NEARLY_ALL - 1.001
+"""Between the quantiles of both ends lies more of the surface, whatever is rounded."""
 
 _ENOUGH = 100_000
 """Triangles that tell whether a scene is wide, as nearly all are."""
@@ -67,8 +71,9 @@ def find_stray_parts(scene: Scene, geometry: Geometry) -> StrayParts | None:
     if count < 2:
         return None
     step = max(1, count // _ENOUGH)
-    ends = _bulk_ends(np.concatenate([one.corners(one.some(step)) for one in groups]))
-    if ends is None or (ends[1] - ends[0]).max() >= _width(groups) * _NARROW:
+    width = _width(groups)
+    ends = _bulk_ends(np.concatenate([one.corners(one.some(step)) for one in groups], axis=2), width)
+    if ends is None or (ends[1] - ends[0]).max() >= width * _NARROW:
         return None
     return _strays(shown, groups, *ends)
 
@@ -77,26 +82,31 @@ def find_stray_parts(scene: Scene, geometry: Geometry) -> StrayParts | None:
 class _Group:
     """The objects that share a mesh. Its triangles are numbered object by object."""
 
-    mesh: Mesh
+    points: NDArray[np.float64]  # shape (3, P), in the mesh's frame
+    triangles: NDArray[np.int32]  # shape (T, 3)
     transforms: NDArray[np.float64]  # shape (N, 4, 4)
     owners: NDArray[np.int64]  # shape (N,): which objects they are
 
     @property
     def count(self) -> int:
-        return len(self.owners) * len(self.mesh.triangles)
+        return len(self.owners) * len(self.triangles)
 
     def some(self, step: int) -> NDArray[np.int64]:
         """Return every `step`-th triangle. The first depends on the group: small ones must not all be left out."""
         return np.arange(int(self.owners[0]) % step, self.count, step)
 
     def corners(self, numbers: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Return the corners of triangles in the scene frame: float64, shape (T, 3, 3)."""
-        which, rows = np.divmod(numbers, len(self.mesh.triangles))
-        own = self.mesh.positions[self.mesh.triangles[rows]].astype(np.float64)
-        if len(self.owners) == 1:
-            return np.asarray(own @ self.transforms[0, :3, :3].T + self.transforms[0, :3, 3])
-        turned = own @ self.transforms[which, :3, :3].transpose(0, 2, 1)
-        return np.asarray(turned + self.transforms[which, None, :3, 3])
+        """Return the corners of triangles in the scene frame: float64, shape (3 corners, 3 axes, T).
+
+        NumPy is slow along short rows, so triangles are along the last axis.
+        """
+        which, rows = np.divmod(numbers, len(self.triangles))
+        own = (self.points.take(corner, axis=1) for corner in self.triangles.take(rows, axis=0).T)
+        if len(self.owners) == 1:  # by einsum: the threads of `@` cost more than they gain
+            turn, move = self.transforms[0, :3, :3], self.transforms[0, :3, 3, None]
+            return np.stack([np.einsum("ij,jt->it", turn, one) + move for one in own])
+        turns, moves = self.transforms[which, :3, :3], self.transforms[which, :3, 3].T
+        return np.stack([np.einsum("tij,jt->it", turns, one) + moves for one in own])
 
     def chunks(self) -> Iterator[tuple[NDArray[np.int64], NDArray[np.float64]]]:
         """Yield numbers and corners of all triangles, without those that have no area, which stretch no grid.
@@ -108,7 +118,7 @@ class _Group:
         for numbers in pieces:
             corners = self.corners(numbers)
             kept = _areas(corners) > 0 if any_area else np.ones(len(numbers), np.bool_)
-            yield numbers[kept], corners[kept]
+            yield numbers[kept], corners[..., kept]
 
 
 def _groups(shown: list[SceneObject]) -> list[_Group]:
@@ -117,8 +127,14 @@ def _groups(shown: list[SceneObject]) -> list[_Group]:
         if len(item.mesh.triangles):
             owners.setdefault(id(item.mesh), []).append(index)
     return [
-        _Group(shown[own[0]].mesh, np.stack([shown[i].transform for i in own]), np.array(own, np.int64))
+        _Group(
+            np.ascontiguousarray(mesh.positions.T, np.float64),
+            mesh.triangles,
+            np.stack([shown[i].transform for i in own]),
+            np.array(own, np.int64),
+        )
         for own in owners.values()
+        for mesh in (shown[own[0]].mesh,)
     ]
 
 
@@ -126,7 +142,7 @@ def _width(groups: list[_Group]) -> float:
     """Return the longest side of a box that holds all vertices."""
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for one in groups:
-        ends = np.stack([one.mesh.positions.min(axis=0), one.mesh.positions.max(axis=0)]).astype(np.float64)
+        ends = np.stack([one.points.min(axis=1), one.points.max(axis=1)])
         corners = np.array([[ends[i & 1, 0], ends[i >> 1 & 1, 1], ends[i >> 2, 2]] for i in range(8)])
         placed = corners @ one.transforms[:, :3, :3].transpose(0, 2, 1) + one.transforms[:, None, :3, 3]
         low, high = np.minimum(low, placed.min(axis=(0, 1))), np.maximum(high, placed.max(axis=(0, 1)))
@@ -135,24 +151,40 @@ def _width(groups: list[_Group]) -> float:
 
 def _areas(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     with np.errstate(over="ignore", invalid="ignore"):
-        crossed = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        return np.asarray(np.linalg.norm(crossed, axis=1) / 2)
+        one, two = corners[1] - corners[0], corners[2] - corners[0]
+        squares = ((one[i - 2] * two[i - 1] - one[i - 1] * two[i - 2]) ** 2 for i in range(3))
+        return np.asarray(np.sqrt(sum(squares)) / 2)
 
 
-def _bulk_ends(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
-    """Return the ends of where the middles of nearly all of the surface are, with some room; None for no surface."""
+def _bulk_ends(corners: NDArray[np.float64], width: float) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+    """Return the ends of where the middles of nearly all of the surface are, with some room.
+
+    None for no surface, and where they are certainly too wide for a scene of this width.
+    """
     area = _areas(corners)
     if not 0 < area.sum() < np.inf:
         return None
-    middles = corners.mean(axis=1)
-    order = np.argsort(middles, axis=0, kind="stable")
-    sums = np.cumsum(area[order], axis=0) / area.sum()
+    middles = corners.mean(axis=0)
+    if not all(_may_be_narrow(axis, area, width) for axis in middles):
+        return None
+    order = np.argsort(middles, axis=1, kind="stable")
+    sums = np.cumsum(area[order], axis=1) / area.sum()
     tail = 1 - _NEARLY_ALL
-    first, last = (sums <= tail).sum(axis=0), np.minimum((sums < 1 - tail).sum(axis=0), len(order) - 1)
+    first, last = (sums <= tail).sum(axis=1), np.minimum((sums < 1 - tail).sum(axis=1), len(area) - 1)
     axes = np.arange(3)
-    low, high = middles[order[first, axes], axes], middles[order[last, axes], axes]
+    low, high = middles[axes, order[axes, first]], middles[axes, order[axes, last]]
     room = (high - low).max() / 2  # quantiles leave ends out
     return low - room, high + room
+
+
+def _may_be_narrow(middles: NDArray[np.float64], area: NDArray[np.float64], width: float) -> bool:
+    """Tell whether nearly all of the surface may lie within half of what is narrow: the other half is room.
+
+    The surface is counted in bins, of which a narrow bulk meets _BULK_BINS at most. That takes less than to sort it.
+    """
+    bins = ((middles - middles.min()) * (_BINS / width)).astype(np.int64)
+    sums = np.append(0.0, np.cumsum(np.bincount(bins, area, _BINS + _BULK_BINS)))
+    return bool((sums[_BULK_BINS:] - sums[:-_BULK_BINS]).max() >= _SURELY_LESS * sums[-1])
 
 
 def _strays(
@@ -164,13 +196,13 @@ def _strays(
     farthest, place = 0.0, start
     for one in groups:
         for numbers, corners in one.chunks():
-            middles = corners.mean(axis=1)
-            within = ((middles >= start) & (middles <= end)).all(axis=1)
-            owners = one.owners[numbers // len(one.mesh.triangles)]
+            middles = corners.mean(axis=0)
+            within = ((middles >= start[:, None]) & (middles <= end[:, None])).all(axis=0)
+            owners = one.owners[numbers // len(one.triangles)]
             inside[owners[within]] = outside[owners[~within]] = True
             whole.add(corners)
-            bulk.add(corners[within])
-            points = corners[~within].reshape(-1, 3)
+            bulk.add(corners[..., within])
+            points = np.moveaxis(corners[..., ~within], 1, 2).reshape(-1, 3)
             if len(points):
                 away = np.maximum(start - points, points - end).max(axis=1)
                 if away.max() > farthest:
@@ -190,9 +222,9 @@ class _Box:
         self.low, self.high, self.area = np.full(3, np.inf), np.full(3, -np.inf), 0.0
 
     def add(self, corners: NDArray[np.float64]) -> None:
-        if len(corners):
-            self.low = np.minimum(self.low, corners.min(axis=(0, 1)))
-            self.high = np.maximum(self.high, corners.max(axis=(0, 1)))
+        if corners.size:
+            self.low = np.minimum(self.low, corners.min(axis=(0, 2)))
+            self.high = np.maximum(self.high, corners.max(axis=(0, 2)))
             self.area += float(_areas(corners).sum())
 
 

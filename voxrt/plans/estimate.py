@@ -80,10 +80,12 @@ def estimate_build(scene: Scene, grid: Grid, options: BuildOptions) -> BuildEsti
             triangles += _TRIANGLES_PER_POINT * len(item.points.positions)
             continue
         points = item.transform[:3, :3] @ mesh.positions.T.astype(np.float64)
-        a, b, c = (points[:, corner] for corner in mesh.triangles.T)  # by axis: NumPy is slow along short rows
+        a, b, c = (
+            points.take(corner, axis=1) for corner in mesh.triangles.T
+        )  # by axis: NumPy is slow along short rows
         if len(mesh.triangles):
-            low = np.minimum(low, np.minimum(np.minimum(a, b), c).min(axis=1) + item.transform[:3, 3])
-            high = np.maximum(high, np.maximum(np.maximum(a, b), c).max(axis=1) + item.transform[:3, 3])
+            low = np.minimum(low, np.min([one.min(axis=1) for one in (a, b, c)], axis=0) + item.transform[:3, 3])
+            high = np.maximum(high, np.max([one.max(axis=1) for one in (a, b, c)], axis=0) + item.transform[:3, 3])
         shadow = float(_largest_projections(b - a, c - a).sum())
         voxels = 1.5 * shadow / grid.voxel_size / grid.voxel_size  # its square may overflow
         triangles += len(mesh.triangles)
