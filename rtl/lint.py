@@ -73,7 +73,10 @@ def lint(what: str, top: str, arguments: list[str | Path]) -> bool:
 
 def lint_boards() -> bool:
     """Lint the designs of the boards with few and many lanes, and their self-tests."""
-    lists = {name: (DESIGNS / f"{name}.f").read_text().splitlines() for name in ("ecp5", "gowin", "ecp5_selftest")}
+    lists = {
+        name: (DESIGNS / f"{name}.f").read_text().splitlines()
+        for name in ("ecp5", "gowin", "ecp5_selftest", "gowin_selftest")
+    }
     designs = {name: [DESIGNS / line for line in lines if line.endswith(".sv")] for name, lines in lists.items()}
     tops = [
         (top, f"{top} with {lanes} lanes", [f"-GLanes={lanes}", *list_sources(), *designs[name]])
@@ -81,6 +84,7 @@ def lint_boards() -> bool:
         for lanes in (1, 4)
     ]
     tops += [(top, top, list(designs["ecp5_selftest"])) for top in ("ecp5_selftest", "ecp5_selftest_sdram")]
+    tops += [("gowin_selftest", "gowin_selftest", list(designs["gowin_selftest"]))]
     return all(lint(what, top, [DESIGNS / "lint.vlt", *arguments]) for top, what, arguments in tops)
 
 

@@ -17,5 +17,6 @@ board_sdram.sv
 board_sdram_pins.sv
 board_sdram_test.sv
 board_selftest.sv
+ecp5_selftest_board.sv
 ecp5_selftest.sv
 ecp5_selftest_sdram.sv

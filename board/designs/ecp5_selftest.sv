@@ -23,14 +23,14 @@ module ecp5_selftest #(
   logic [7:0] all_leds;
   logic unused_system_clk, unused_chip_clk, unused_rst_n;
 
-  board_selftest #(
+  ecp5_selftest_board #(
     .InputDivider   (InputDivider),
     .FeedbackDivider(FeedbackDivider),
     .SystemDivider  (SystemDivider),
     .GapBits        (GapBits),
     .WindowBits     (WindowBits),
     .ButtonsLow     (ButtonsLow)
-  ) u_selftest (
+  ) u_board (
     .clk,
     .uart_rx,
     .uart_tx,

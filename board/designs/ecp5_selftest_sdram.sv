@@ -43,7 +43,7 @@ module ecp5_selftest_sdram #(
   board_pkg::sdram_out_t sdram;
   logic [15:0] dq;
 
-  board_selftest #(
+  ecp5_selftest_board #(
     .InputDivider   (InputDivider),
     .FeedbackDivider(FeedbackDivider),
     .SystemDivider  (SystemDivider),
@@ -52,7 +52,7 @@ module ecp5_selftest_sdram #(
     .GapBits        (GapBits),
     .WindowBits     (WindowBits),
     .ButtonsLow     (ButtonsLow)
-  ) u_selftest (
+  ) u_board (
     .clk,
     .uart_rx,
     .uart_tx,

@@ -41,14 +41,14 @@ def constraints(board: Mapping[str, Any]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def parameters(board: Mapping[str, Any]) -> dict[str, int]:
-    """Give the parameters of the top that are numbers."""
+def parameters(board: Mapping[str, Any], *, is_selftest: bool = False) -> dict[str, int]:
+    """Give the parameters of the top that are numbers. A self-test has neither a core nor frames."""
     pins = board["pins"]
+    frames = {} if is_selftest else {"LineBits": board["line_bits"], "ColumnBits": board["column_bits"]}
     return {
         "SystemDivider": board["pll"]["system_divider"],
         **board["core"],
-        "LineBits": board["line_bits"],
-        "ColumnBits": board["column_bits"],
+        **frames,
         "ButtonsLow": int(pins["buttons_low"]),
         "Buttons": len(pins["buttons"]),
         "LedsLow": int(pins["leds_low"]),

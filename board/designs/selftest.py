@@ -1,4 +1,4 @@
-"""The host's side of the self-test of an ECP5 board: what its registers say, and what to do about it.
+"""The host's side of the self-test of a board: what its registers say, and what to do about it.
 
 ``docs/board-selftest.md`` is the reference of the registers. The design has no ray tracer.
 """
@@ -11,8 +11,6 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from voxrt.board.designs.boot_table import BOARD_REGISTERS
-from voxrt.board.designs.build import PIXEL_MHZ
-from voxrt.board.designs.description import BIT_MHZ
 from voxrt.board.errors import DeviceError
 
 if TYPE_CHECKING:
@@ -43,6 +41,8 @@ _NAMES = (
     "sdram_wrong",
     "sdram_bits",
     "sdram_first",
+    "pixel_clock",
+    "button_count",
 )
 SELFTEST_REGISTERS = {name: BOARD_REGISTERS["identity"] + 4 * number for number, name in enumerate(_NAMES)}
 """Addresses by name."""
@@ -158,15 +158,17 @@ def _check_clocks(link: SerialLink) -> Finding:
     for _ in range(_POLLS):
         if _read(link, "pixel_clocks") and _read(link, "bit_clocks"):
             break
-    measured, right = [], True
-    for name, mhz in (("bit", BIT_MHZ), ("pixel", PIXEL_MHZ)):
+    measured, right, pixel_mhz = [], True, _read(link, "pixel_clock") / 1e6
+    for name, mhz in (("bit", 5 * pixel_mhz), ("pixel", pixel_mhz)):
         found = _read(link, f"{name}_clocks") * clock / _WINDOW / 1e6
         measured.append(f"{name} clock {found:.2f} MHz")
         right = right and abs(found / mhz - 1) < _CLOCK_ERROR
     text = f"{measured[0]}, {measured[1]}, by the system clock"
     if right:
         return Finding("clocks", "passed", text)
-    wanted = f"they must be {BIT_MHZ} and {PIXEL_MHZ} MHz: the PLL does not work as it should; report this, please"
+    wanted = (
+        f"they must be {5 * pixel_mhz:g} and {pixel_mhz:g} MHz: the PLL does not work as it should; report this, please"
+    )
     return Finding("clocks", "failed", f"{text}; {wanted}")
 
 
@@ -179,9 +181,9 @@ def _check_frames(link: SerialLink) -> Finding:
 
 
 def _check_buttons(link: SerialLink) -> Finding:
-    word = _read(link, "buttons")
-    held = [name for bit, name in enumerate(BUTTONS) if not word >> (16 + bit) & 1]
-    missing = [name for bit, name in enumerate(BUTTONS) if not word >> (8 + bit) & 1]
+    word, buttons = _read(link, "buttons"), BUTTONS[: _read(link, "button_count")]
+    held = [name for bit, name in enumerate(buttons) if not word >> (16 + bit) & 1]
+    missing = [name for bit, name in enumerate(buttons) if not word >> (8 + bit) & 1]
     if held:
         return Finding("buttons", "failed", f"always pressed: {', '.join(held)}; is this the board's revision?")
     if missing:

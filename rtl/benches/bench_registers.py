@@ -7,7 +7,7 @@ import cocotb
 from cocotb.triggers import ClockCycles
 from cocotbext.axi import AxiResp
 from core_driver import started
-from run import GENERATED
+from run import GENERATED, SEED
 from voxrt_registers import MATERIALS, REGISTERS
 
 # control's bits do things when written; the benches of the whole core see to them.
@@ -89,6 +89,35 @@ async def strobes(dut):
             ]
             got = (await core.axi.read(address, 4)).data
             assert [a & b for a, b in zip(got, writable, strict=True)] == expected, name
+
+
+@cocotb.test()
+async def reads_and_writes_overlap(dut):
+    """Data may come before their addresses, the next before the last are taken; answers wait for the host."""
+    core = await started(dut)
+    names = [name for name, fields in described().items() if mask(fields, "rw") == 0xFFFFFFFF and name not in ACTS]
+    assert len(names) > 2
+    writes, reads = core.axi.write_if, core.axi.read_if
+    channels = [writes.aw_channel, writes.w_channel, writes.b_channel, reads.ar_channel, reads.r_channel]
+    chance = random.Random(SEED)
+
+    def waits(often):
+        while True:
+            yield chance.random() < often
+
+    async def use(name):
+        for _ in range(40):
+            value = chance.getrandbits(32)
+            await core.axi.write_dword(REGISTERS[name][0], value)
+            assert await core.axi.read_dword(REGISTERS[name][0]) == value, name
+
+    for often in (0.0, 0.5, 0.9):  # the share of clocks in which a channel waits
+        for channel in channels:
+            channel.set_pause_generator(waits(often))
+        for user in [cocotb.start_soon(use(name)) for name in names]:
+            await user
+    for channel in channels:
+        channel.clear_pause_generator()
 
 
 @cocotb.test()

@@ -22,7 +22,7 @@ pytest.importorskip("serial", reason="pyserial is not installed")
 
 GOOD = {
     "identity": int.from_bytes(b"VXST", "big"),
-    "version": 0x100,
+    "version": 0x101,
     "clock": 75_000_000,
     "lock": 1,
     "bit_clocks": 1_747_584,
@@ -30,6 +30,8 @@ GOOD = {
     "buttons": 0x00070700,
     "sdram": 0x301,
     "sdram_lines": 2_097_408,
+    "pixel_clock": 25_000_000,
+    "button_count": 3,
 }
 
 

@@ -15,7 +15,7 @@ from voxrt.board.designs.simulation.board_simulation import BoardSimulation, com
 
 pytestmark = [pytest.mark.xdist_group("selftest"), *needs_compiled_verilator]
 
-PLAIN, CHIP = selftest_of(read_board("icepi-zero")), selftest_of(read_board("ulx3s-85f-sdram"))
+PLAIN, CHIP, GOWIN = (selftest_of(read_board(name)) for name in ("icepi-zero", "ulx3s-85f-sdram", "tang-nano-20k"))
 RELEASED = 0b111  # the buttons of this board are low when pressed
 QUICK = {"LineBits": 8, "PowerOnUs": 2}
 
@@ -72,8 +72,25 @@ def test_the_host_reads_the_results(program, tmp_path):
         assert states(check_selftest(link, ignore)) == passed | {"screen": "open", "buttons": "passed"}
         # Addresses without a register.
         assert link._ask(1, 0x1000, 16, b"") != b""
-        with pytest.raises(Exception, match="address 0x001040 has no register"):
-            link.read(0x1040, 1)
+        with pytest.raises(Exception, match="address 0x001048 has no register"):
+            link.read(0x1048, 1)
+
+
+def test_a_gowin_has_the_same_self_test(tmp_path):
+    with BoardSimulation(compile_sources(GOWIN, tmp_path / "program"), tmp_path / "run") as board:
+        board.press(0)  # the buttons of this board are high when pressed, and its LEDs are low when lit
+        [(pixels, timing)] = board.frames(1)
+        assert timing.is_vga, timing
+        lit = [pixels[470, 80 * number + 40, 0] == 255 for number in range(8)]
+        np.testing.assert_array_equal(pixels, selftest_picture(lit))
+        assert ~board.leds() & 0b1001 == 0b0001  # locked, no button
+        link = SerialLink("simulation", SimulatedPort(board))
+        assert int(link.read(SELFTEST_REGISTERS["clock"], 1)[0]) == clock_hz(GOWIN)
+        found = check_selftest(link, ignore)
+        passed = dict.fromkeys(("serial line", "PLL", "clocks", "picture"), "passed")
+        assert states(found) == passed | {"screen": "open", "buttons": "open"}
+        assert "bit clock 126.00 MHz, pixel clock 25.20 MHz" in found[2].text
+        assert found[-1].text.endswith("Not seen yet: pause, reverse")
 
 
 def test_a_button_that_is_always_pressed_fails(program, tmp_path):

@@ -54,8 +54,11 @@ def test_the_self_test_of_a_board_is_packed(voxrt, folder):
     assert len(bits) > 20_000
 
 
-def test_a_board_without_a_self_test_is_refused(voxrt):
-    voxrt.fails(5, "Tang Nano 20K has no self-test", "bitstream", "--selftest", "--board", "tang-nano-20k")
+def test_the_self_test_of_a_gowin_is_a_bitstream_already(voxrt, folder):
+    result = voxrt.json("bitstream", "--board", "tang-nano-20k", "--selftest", "-o", "out")
+    assert result["bitstream"] == "out/tang-nano-20k-selftest.fs"
+    assert (result["clock_hz"], result["seed"]) == (75_600_000, 1)
+    assert Path(folder, result["bitstream"]).read_text().startswith("//")
 
 
 def test_boards_without_a_design_are_refused(voxrt):

@@ -87,6 +87,7 @@ RANGES = {
     },
     "board_sdram_arbiter": {"Ports": ((2,), (1,))},
     "board_sdram_test": {"LineBits": ((8, 20), (7, 21))},
+    "board_selftest": {"PixelHz": ((1,), (0,)), "Buttons": ((1, 3), (0, 4))},
     "board_serializer": {"Channels": ((1,), (0,))},
     "board_uart": {
         "ClockHz": ((24_000_000, 75_000_000), (23_999_999,)),
@@ -94,6 +95,7 @@ RANGES = {
     },
     "ecp5_selftest": {"Leds": ((1, 8), (0, 9)), "Highs": ((1,), (0,))},
     "ecp5_selftest_sdram": {"Leds": ((1, 8), (0, 9)), "Highs": ((1,), (0,))},
+    "gowin_selftest": {"Leds": ((1, 8), (0, 9)), "Buttons": ((1, 3), (0, 4))},
     "ecp5_top": {"Leds": ((1, 8), (0, 9)), "Highs": ((1,), (0,))},
     "ecp5_top_sdram": {"Leds": ((1, 8), (0, 9)), "Highs": ((1,), (0,))},
     "gowin_clocks": {"SystemDivider": ((10, 12, 14, 16, 18, 20, 21, 24), (9, 11, 13, 22, 28))},
@@ -103,7 +105,7 @@ RANGES = {
 
 
 def sources() -> list[Path]:
-    names = ("ecp5.f", "gowin.f", "ecp5_selftest.f")
+    names = ("ecp5.f", "gowin.f", "ecp5_selftest.f", "gowin_selftest.f")
     lists = ((RTL, "voxrt.f"), *((DESIGNS, name) for name in names))
     named = [
         folder / line

