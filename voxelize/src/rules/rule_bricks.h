@@ -32,21 +32,21 @@ inline size_t find_octant(const SparseVoxels& voxels, uint64_t code) {
 
 class RuleBricks {
 public:
-    /// `voxels`: what is touched; it must outlive this. Bricks that are solid as a whole are added where a voxel beside
-    /// them is not filled.
-    RuleBricks(const SparseVoxels& voxels, std::vector<RuleBrick> bricks)
-        : voxels_(voxels), bricks_(std::move(bricks)) {
+    /// `voxels`: what is touched; it must outlive this. `tiles`: their bricks, by code. `adds_whole`: bricks that are
+    /// solid as a whole are added where a voxel beside them is not filled.
+    RuleBricks(const SparseVoxels& voxels, const std::vector<std::vector<RuleBrick>>& tiles, bool adds_whole)
+        : voxels_(voxels) {
+        join(tiles);
         index();
-        std::vector<RuleBrick> beside;
+        std::vector<uint64_t> beside;
         for (const RuleBrick& brick : bricks_)
-            add_whole_beside(brick, beside);
+            if (adds_whole)
+                add_whole_beside(brick, beside);
         if (beside.empty())
             return;
-        sort(beside);
-        beside.erase(
-            std::unique(beside.begin(), beside.end(), [](const auto& a, const auto& b) { return a.code == b.code; }),
-            beside.end());
-        bricks_.insert(bricks_.end(), beside.begin(), beside.end());
+        std::sort(beside.begin(), beside.end());
+        beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
+        add_whole(beside);
         index();
     }
 
@@ -156,30 +156,46 @@ private:
                 return table_[at].cube;
     }
 
-    /// Sorts by code. Bricks come in ascending runs, each of a tile's cube.
-    static void sort(std::vector<RuleBrick>& bricks) {
-        const auto is_before = [](const auto& a, const auto& b) { return a.code < b.code; };
-        std::vector<std::span<const RuleBrick>> runs;
-        for (auto at = bricks.cbegin(); at != bricks.cend();) {
-            const auto end = std::adjacent_find(at, bricks.cend(), [&](auto& a, auto& b) { return !is_before(a, b); });
-            const auto next = end == bricks.cend() ? end : end + 1;
-            runs.emplace_back(at, next);
-            at = next;
+    /// Joins the bricks of tiles, cube by cube.
+    void join(const std::vector<std::vector<RuleBrick>>& tiles) {
+        std::vector<std::span<const RuleBrick>> cubes;
+        size_t count = 0;
+        for (const std::vector<RuleBrick>& tile : tiles) {
+            for (auto at = tile.begin(); at != tile.end();) {
+                const auto end = std::find_if(at, tile.end(),
+                                              [&](auto& one) { return one.code >> kCubeBits != at->code >> kCubeBits; });
+                cubes.emplace_back(at, end);
+                at = end;
+            }
+            count += tile.size();
         }
-        if (runs.size() < 2)
-            return;
-        std::sort(runs.begin(), runs.end(), [](auto& a, auto& b) { return a.front().code < b.front().code; });
-        std::vector<RuleBrick> sorted;
-        sorted.reserve(bricks.size());
-        for (const auto& run : runs)
-            sorted.insert(sorted.end(), run.begin(), run.end());
-        if (!std::is_sorted(sorted.begin(), sorted.end(), is_before))
-            std::sort(sorted.begin(), sorted.end(), is_before);
-        bricks = std::move(sorted);
+        std::sort(cubes.begin(), cubes.end(), [](auto& a, auto& b) { return a.front().code < b.front().code; });
+        bricks_.reserve(count);
+        for (const auto& cube : cubes)
+            bricks_.insert(bricks_.end(), cube.begin(), cube.end());
+    }
+
+    /// Adds bricks that are solid as a whole, with codes in ascending order.
+    void add_whole(const std::vector<uint64_t>& codes) {
+        LargeVector<RuleBrick> all;
+        all.reserve(bricks_.size() + codes.size());
+        auto next = codes.begin();
+        auto add_before = [&](uint64_t code) {
+            for (; next != codes.end() && *next < code; ++next) {
+                RuleBrick& whole = all.emplace_back(RuleBrick{*next, {}, {}, {}});
+                whole.touched.fill(~uint64_t{0});
+                whole.filled.fill(~uint64_t{0});
+            }
+        };
+        for (const RuleBrick& brick : bricks_) {
+            add_before(brick.code);
+            all.push_back(brick);
+        }
+        add_before(~uint64_t{0});
+        bricks_ = std::move(all);
     }
 
     void index() {
-        sort(bricks_);
         size_t cubes = 0;
         for (size_t i = 0; i < bricks_.size(); ++i)
             cubes += i == 0 || bricks_[i].code >> kCubeBits != bricks_[i - 1].code >> kCubeBits;
@@ -230,7 +246,7 @@ private:
         return find(morton(uint32_t(x), uint32_t(y), uint32_t(z)));
     }
 
-    void add_whole_beside(const RuleBrick& brick, std::vector<RuleBrick>& beside) const {
+    void add_whole_beside(const RuleBrick& brick, std::vector<uint64_t>& beside) const {
         const Slices removed = brick.removed();
         uint64_t any = 0;
         for (const uint64_t slice : removed)
@@ -248,15 +264,12 @@ private:
             to[side / 2] += side % 2 == 0 ? -1 : 1;
             if (!reaches[side] || find_at(to[0], to[1], to[2]) != kFull)
                 continue;
-            RuleBrick whole{morton(uint32_t(to[0]), uint32_t(to[1]), uint32_t(to[2])), {}, {}, {}};
-            whole.touched.fill(~uint64_t{0});
-            whole.filled.fill(~uint64_t{0});
-            beside.push_back(whole);
+            beside.push_back(morton(uint32_t(to[0]), uint32_t(to[1]), uint32_t(to[2])));
         }
     }
 
     const SparseVoxels& voxels_;
-    std::vector<RuleBrick> bricks_; // by code
+    LargeVector<RuleBrick> bricks_; // by code
     std::vector<std::array<uint32_t, kCubeBricks>> cubes_;
     std::vector<Entry> table_; // of cubes, by open addressing
     int shift_ = 60;

@@ -21,7 +21,7 @@ namespace voxrt::voxelize {
 
 /// What the tiles of a rule found.
 struct RuleFindings {
-    std::vector<RuleBrick> bricks;
+    std::vector<std::vector<RuleBrick>> bricks; // by tile
     std::vector<OwnedSurface> owned;
     std::vector<MixedSurface> mixed;
 };

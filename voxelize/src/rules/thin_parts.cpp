@@ -118,7 +118,7 @@ Slices find_thin(const RuleBricks& bricks, size_t i) {
 }
 
 /// The voxels of a brick that are not filled, of thin parts or beside one of their voxels.
-Slices find_candidates(const RuleBricks& bricks, const std::vector<Slices>& thin, size_t i,
+Slices find_candidates(const RuleBricks& bricks, const LargeVector<Slices>& thin, size_t i,
                        const std::array<uint32_t, 27>& around) {
     static constexpr Slices none{};
     std::array<const Slices*, 27> near;
@@ -169,7 +169,8 @@ void take(const RuleBricks& bricks, ThinBrick& thin, int turn) {
 void keep_thin_parts(RuleBricks& bricks, const Workers& workers) {
     constexpr size_t kBricks = 64; // per job
     const size_t jobs = (bricks.size() + kBricks - 1) / kBricks;
-    std::vector<Slices> of_thin_parts(bricks.size());
+    LargeVector<Slices> of_thin_parts;
+    of_thin_parts.resize(bricks.size());
     std::vector<uint8_t> has_some(jobs);
     workers.run(jobs, [&](size_t job, int) {
         for (size_t i = job * kBricks; i < std::min(bricks.size(), (job + 1) * kBricks); ++i) {

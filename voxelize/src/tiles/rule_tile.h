@@ -94,29 +94,18 @@ public:
         sums_[row].add(voxels, volumes);
     }
 
-    /// Appends the bricks of the tile, and who owns their surface. Returns the voxels that volumes do not decide.
+    /// Appends the bricks of the tile, by code, and who owns their surface. Returns the voxels that volumes do not decide.
     std::vector<HalfDoubt> list(const TileVoxels& tile, std::vector<RuleBrick>& bricks,
                                 std::vector<OwnedSurface>& owned, std::vector<MixedSurface>& mixed) const {
         std::vector<HalfDoubt> doubts;
-        for (int column = 0; column < kTileColumns; ++column) {
-            if (!tile.column_used(column))
-                continue;
-            for (int k = 0; k < tile.height(); ++k) {
-                const uint32_t slot = *tile.slots(column, k), surface = *surface_.slots(column, k);
-                if (slot == 0 || (slot < TileVoxels::kFirstBrick && surface == 0))
-                    continue;
-                const Slices touched = tile.mask_of(slot);
-                Slices filled = filled_.mask_of(*filled_.slots(column, k));
-                const size_t place = size_t(column) * size_t(tile.height()) + size_t(k);
-                if (!summed_.empty() && sum_rows_[place] != kNone)
-                    if (const Slices near = sums_[sum_rows_[place]].add_halves(filled, error_bound()); !is_empty(near))
-                        doubts.push_back({bricks.size(), column, k, near});
-                for (int z = 0; z < kBrickSide; ++z)
-                    filled[z] &= touched[z];
-                bricks.push_back({code_of(column, k), touched, filled, surface_.mask_of(surface)});
-                if (const uint32_t several = *mixed_.slots(column, k); several != 0)
-                    mixed.push_back({code_of(column, k), mixed_.mask_of(several)});
-            }
+        for (int base = 0; base < tile.height(); base += kTileBricks) {
+            const Slices listed = listed_in(tile, base);
+            for (size_t word = 0; word < listed.size(); ++word)
+                for (uint64_t left = listed[word]; left != 0; left &= left - 1) {
+                    const uint64_t at = word * 64 + uint64_t(std::countr_zero(left));
+                    const int column = int(gather_bits(at) + gather_bits(at >> 1) * kTileBricks);
+                    add_brick(tile, column, base + int(gather_bits(at >> 2)), bricks, mixed, doubts);
+                }
         }
         owned.insert(owned.end(), owned_.begin(), owned_.end());
         return doubts;
@@ -203,6 +192,44 @@ private:
         Slices voxels;
         uint32_t part, before; // of the brick
     };
+
+    /// Which bricks of a cube are solid in part, or solid with surface: bits by Morton code.
+    Slices listed_in(const TileVoxels& tile, int base) const {
+        Slices listed{};
+        const int levels = std::min(kTileBricks, tile.height() - base);
+        for (int column = 0; column < kTileColumns; ++column) {
+            const uint32_t *slots = tile.slots(column, base), *surfaces = surface_.slots(column, base);
+            uint32_t any = 0, any_surface = 0;
+            for (int z = 0; z < levels; ++z) {
+                any |= slots[z];
+                any_surface |= surfaces[z];
+            }
+            if (any < TileVoxels::kFirstBrick && any_surface == 0)
+                continue;
+            const uint64_t lowest = morton(uint32_t(column % kTileBricks), uint32_t(column / kTileBricks), 0);
+            for (int z = 0; z < levels; ++z)
+                if (slots[z] >= TileVoxels::kFirstBrick || (slots[z] != 0 && surfaces[z] != 0)) {
+                    const uint64_t at = lowest | morton(0, 0, uint32_t(z));
+                    listed[at / 64] |= uint64_t{1} << at % 64;
+                }
+        }
+        return listed;
+    }
+
+    void add_brick(const TileVoxels& tile, int column, int k, std::vector<RuleBrick>& bricks,
+                   std::vector<MixedSurface>& mixed, std::vector<HalfDoubt>& doubts) const {
+        const Slices touched = tile.mask_of(*tile.slots(column, k));
+        Slices filled = filled_.mask_of(*filled_.slots(column, k));
+        const size_t place = size_t(column) * size_t(tile.height()) + size_t(k);
+        if (!summed_.empty() && sum_rows_[place] != kNone)
+            if (const Slices near = sums_[sum_rows_[place]].add_halves(filled, error_bound()); !is_empty(near))
+                doubts.push_back({bricks.size(), column, k, near});
+        for (int z = 0; z < kBrickSide; ++z)
+            filled[z] &= touched[z];
+        bricks.push_back({code_of(column, k), touched, filled, surface_.mask_of(*surface_.slots(column, k))});
+        if (const uint32_t several = *mixed_.slots(column, k); several != 0)
+            mixed.push_back({code_of(column, k), mixed_.mask_of(several)});
+    }
 
     uint64_t code_of(int column, int k) const {
         return morton(uint32_t(tile_x_ * kTileBricks + column % kTileBricks),

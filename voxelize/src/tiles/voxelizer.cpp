@@ -182,11 +182,10 @@ struct BlockVoxelizer::State {
         RuleFindings findings;
         auto take_findings = [&](std::vector<TileResult>& from) {
             for (TileResult& tile : from) {
-                findings.bricks.insert(findings.bricks.end(), tile.rule_bricks.begin(), tile.rule_bricks.end());
+                findings.bricks.push_back(std::move(tile.rule_bricks));
                 findings.owned.insert(findings.owned.end(), tile.owned.begin(), tile.owned.end());
                 findings.mixed.insert(findings.mixed.end(), tile.mixed.begin(), tile.mixed.end());
                 tile.mixed = {};
-                tile.rule_bricks = {};
                 tile.owned = {};
             }
         };
