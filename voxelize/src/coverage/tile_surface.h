@@ -116,6 +116,9 @@ public:
         }
     }
 
+    /// A triangle crosses columns of a row at voxels that it does not cover.
+    void cross_row(int group, int y, int k, ColumnBytes crossed, bool enters);
+
     /// A voxel has fully transparent surface: that alone makes it no shell, and keeps it out of the inside.
     void cover_transparent(int x, int y, int z) {
         const Position at_column = locate(x, y);
@@ -125,11 +128,11 @@ public:
 
     /// Receives from find_centres that the centres of voxels lo … hi of column (x, y) lie on the surface.
     void hold(int x, int y, int lo, int hi) {
-        const Position at_column = locate(x, y);
         for (int z = lo; z <= hi; ++z)
-            row_of(at(at_column.column, z >> kBrickBits).held)[z & (kBrickSide - 1)] |= uint64_t{1}
-                                                                                        << column_bit(x - x_, y - y_);
+            hold_in_tile(x - x_, y - y_, z);
     }
+    /// The same for a voxel; x and y from the tile's lowest column.
+    void hold_in_tile(int x, int y, int z);
 
     /// Receives from cover_triangle that the ray of column (x, y) crosses the surface at voxel z.
     void cross(int x, int y, int z, bool enters) {

@@ -15,9 +15,17 @@ bool fits_vectors(const Vertex& a, const Vertex& b, const Vertex& c);
 /// and not upright, and its extent in voxels is below 128, or 128 by its slope.
 bool fits_pieces(const Vertex& a, const Vertex& b, const Vertex& c, int top);
 
-/// What is wanted beside the voxels that a triangle covers: which columns it crosses, its pieces.
+/// Whether triangle abc is a segment or a point, seen along z.
+inline bool is_upright(const Vertex& a, const Vertex& b, const Vertex& c) {
+    return (int64_t{b.x} - a.x) * (int64_t{c.y} - a.y) == (int64_t{b.y} - a.y) * (int64_t{c.x} - a.x);
+}
+
+/// What is wanted beside the voxels that a triangle covers.
 struct Wanted {
-    bool crosses = false, pieces = false;
+    bool crosses = false; // which columns it crosses
+    bool centres = false; // at their centres (centre_crossings.h). Not of upright triangles
+    bool holds = false;   // which centres lie on it, with `centres`
+    bool pieces = false;  // its pieces
 };
 
 /// Adds to a surface what triangle abc covers of the surface's tile, and what else is wanted. `window`: the tile's.

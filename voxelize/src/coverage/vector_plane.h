@@ -107,7 +107,7 @@ public:
             set_all(carry_, 1);
             height_ = all(4 * kBeyond);
             row_ = Quotients<Rest>(Wide{0}, Wide{1});
-            next_row_ = next_group_ = row_;
+            centre_ = next_row_ = next_group_ = row_;
             row_.whole = all(-2 * kBeyond);
             return;
         }
@@ -118,9 +118,11 @@ public:
         }
         const Wide unit = nz * kUnit;
         set_all(unit_, static_cast<int64_t>(unit));
-        const Quotients<Rest> height(static_cast<Wide>((nx < 0 ? -nx : nx) + (ny < 0 ? -ny : ny)) * kUnit - 1, unit);
+        const Wide spread = static_cast<Wide>((nx < 0 ? -nx : nx) + (ny < 0 ? -ny : ny)) * kUnit;
+        const Quotients<Rest> height(spread - 1, unit);
         height_ = height.whole;
         carry_ = unit_ - height.rest;
+        centre_ = Quotients<Rest>((spread - unit) / 2, unit);
         auto corner = [&](int64_t n, double at) { return static_cast<Wide>(n) * static_cast<int64_t>(at); };
         row_ = Quotients<Rest>(corner(nx, t.x[0]) + corner(ny, t.y[0]) + corner(nz, t.z[0]) -
                                    corner(nx, (x + (nx > 0)) * kVoxel) - corner(ny, (y + (ny > 0)) * kVoxel),
@@ -148,10 +150,21 @@ public:
         z.hi = smaller(group_.whole + height_ + one_unless_less(group_.rest, carry_), z.hi);
     }
 
+    // The highest voxels of a group's columns whose centre is not above the plane. `on`: where it lies on the plane.
+    Lanes centres(Mask& on) const {
+        Quotients<Rest> height = group_;
+        height.add(centre_, unit_);
+        Rest one;
+        set_all(one, 1);
+        on = less(one_unless_less(height.rest, one), all(1));
+        return height.whole;
+    }
+
 private:
     bool enters_;
     Rest unit_, carry_; // carry_: which rest makes one more than height_
     Lanes height_;      // (spread - 1) / unit
+    Quotients<Rest> centre_; // from the lowest corner of a column to its centre, less half a voxel
     Quotients<Rest> row_, next_row_, group_, next_group_;
 };
 

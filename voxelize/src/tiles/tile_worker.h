@@ -211,20 +211,24 @@ private:
                 if (is_shell_only) {
                     HeldSurface held(surface);
                     cover_triangle<false>(a, b, c, window, analysis.inverted, held);
-                } else if (part.rule == Rule::half && !has_caps) {
-                    CrossingsAlone crossings(surface);
-                    if (counts) {
-                        find_centres<true>(a, b, c, window, crossings);
-                        wanted.pieces = by_vectors && fits_pieces(a, b, c, window.top);
-                        if (!wanted.pieces)
-                            add_pieces(a, b, c, window, surface);
-                    }
-                } else if (counts && !has_caps) {
-                    find_centres<true>(a, b, c, window, surface);
                 } else {
-                    find_centres<false>(a, b, c, window, surface);
-                    if (counts)
+                    const bool by_volume = part.rule == Rule::half && !has_caps;
+                    if (by_vectors && !is_upright(a, b, c)) {
+                        wanted = {counts && !has_caps, true, !by_volume};
+                    } else if (by_volume) {
+                        CrossingsAlone crossings(surface);
+                        if (counts)
+                            find_centres<true>(a, b, c, window, crossings);
+                    } else if (counts && !has_caps) {
+                        find_centres<true>(a, b, c, window, surface);
+                    } else {
+                        find_centres<false>(a, b, c, window, surface);
+                    }
+                    if (counts && has_caps)
                         cross_triangle(a, b, c, window, surface);
+                    wanted.pieces = counts && by_volume && by_vectors && fits_pieces(a, b, c, window.top);
+                    if (counts && by_volume && !wanted.pieces)
+                        add_pieces(a, b, c, window, surface);
                 }
             }
             if (by_vectors) {
