@@ -18,10 +18,21 @@ void TileSurface::hold_in_tile(int x, int y, int z) {
     row_of(at(column, z >> kBrickBits).held)[z & (kBrickSide - 1)] |= uint64_t{1} << column_bit(x, y);
 }
 
-void TileSurface::add_pieces(const ColumnPieces& columns, int count, int n) {
-    for (int i = 0; i < count; ++i)
-        if (n < columns.voxels[i])
-            add_piece(x_ + columns.x[i], y_ + columns.y[i], columns.z[i] + n, columns.areas[i], columns.volumes[i]);
+void TileSurface::add_pieces(const ColumnPieces& columns, int count, int from, int to) {
+    for (int i = 0; i < count; ++i) {
+        const int x = columns.x[i], y = columns.y[i], end = columns.z[i] + std::min(to, columns.voxels[i]);
+        const int column = (y >> kBrickBits) * kTileBricks + (x >> kBrickBits), bit = column_bit(x, y);
+        double* pieces = nullptr;
+        int level = 0;
+        for (int z = columns.z[i] + from; z < end; ++z, ++level) {
+            if (level == 0 || (z & (kBrickSide - 1)) == 0)
+                pieces = pieces_at(column, z >> kBrickBits) + bit;
+            double* const piece = pieces + (z & (kBrickSide - 1)) * 64;
+            const double volume = columns.volumes[level][i];
+            piece[0] += volume;
+            piece[64] += columns.areas[level][i] - volume;
+        }
+    }
 }
 
 } // namespace voxrt::voxelize

@@ -47,11 +47,11 @@ struct RepeatedCrossing {
     bool enters;
 };
 
-/// What a triangle adds to volumes in up to eight columns of a tile, in voxel z + n of each.
+/// What a triangle adds to volumes in up to eight columns of a tile, from voxel z on.
 struct ColumnPieces {
-    int32_t x[8], y[8], z[8]; // x, y: from the tile's lowest column
-    int32_t voxels[8];        // nothing is added where n is not below
-    alignas(64) double areas[8], volumes[8];
+    static constexpr int kLevels = 8;
+    int32_t x[8], y[8], z[8], voxels[8];                       // x, y: from the tile's lowest column
+    alignas(64) double areas[kLevels][8], volumes[kLevels][8]; // of voxel z + n: at n % kLevels
 };
 
 class TileSurface {
@@ -143,19 +143,14 @@ public:
 
     /// Receives from add_pieces what a triangle adds to the volume of voxel z, and to each above.
     void add_piece(int x, int y, int z, double area, double volume) {
-        ShellBrick& brick = at(locate(x, y).column, z >> kBrickBits);
-        if (brick.pieces == kNone) {
-            brick.pieces = uint32_t(pieces_.size());
-            pieces_.emplace_back().fill(0);
-        }
-        VolumePieces& pieces = pieces_[brick.pieces];
-        const auto place = size_t((z & (kBrickSide - 1)) * 64 + column_bit(x - x_, y - y_));
-        pieces[place] += volume;
-        pieces[place + 64] += area - volume;
+        double* const piece = pieces_at(locate(x, y).column, z >> kBrickBits) +
+                              (z & (kBrickSide - 1)) * 64 + column_bit(x - x_, y - y_);
+        piece[0] += volume;
+        piece[64] += area - volume;
     }
 
-    /// The same for the first `count` columns. In a file of its own, as add_row_slowly.
-    void add_pieces(const ColumnPieces& columns, int count, int n);
+    /// The same for voxels z + from … z + to - 1 of the first `count` columns. In a file of its own, as add_row_slowly.
+    void add_pieces(const ColumnPieces& columns, int count, int from, int to);
 
     /// Brick `k` (along z) of a brick column, or null.
     ShellBrick* find(int column, int k) {
@@ -214,6 +209,16 @@ public:
     Slices mixed(const ShellBrick& brick) const { return brick.mixed == kNone ? Slices{} : rows_[brick.mixed]; }
 
 private:
+    /// The pieces of a brick, made where there is none.
+    double* pieces_at(int column, int k) {
+        ShellBrick& brick = at(column, k);
+        if (brick.pieces == kNone) {
+            brick.pieces = uint32_t(pieces_.size());
+            pieces_.emplace_back().fill(0);
+        }
+        return pieces_[brick.pieces].data();
+    }
+
     Slices& row_of(uint32_t& row) {
         if (row == kNone) {
             row = uint32_t(rows_.size());

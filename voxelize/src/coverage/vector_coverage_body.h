@@ -246,10 +246,12 @@ inline void cover_area(const Corners& t, const Area& area, const Wanted& wanted,
             }
             store_as_int(lo, z.lo);
             store_as_int(hi, larger(z.hi, z.lo - all(1)));
-            if (pieces != nullptr)
-                for (int i = 0; i < kLanes; ++i)
-                    if (lo[i] <= hi[i] && (covered >> (group * kLanes + i) & 1) != 0)
-                        pieces->add_column(group * kLanes + i, y, lo[i], hi[i]);
+            if (pieces != nullptr) {
+                alignas(64) double above[kLanes];
+                store(above, plane.above_corners(z.lo));
+                const uint64_t columns = covered >> group * kLanes & 0xFF & ~uint64_t{less(z.hi, z.lo)};
+                pieces->add_columns(columns, group, y, lo, hi, above);
+            }
             for (int brick = first_brick; brick <= last_brick; brick += IntervalBytes::kBricks) {
                 const IntervalBytes bytes(lo, hi, wanted.centres ? centres : lo, brick * kBrickSide);
                 for (int i = 0; i < IntervalBytes::kBricks && brick + i <= last_brick; ++i) {

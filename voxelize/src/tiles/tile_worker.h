@@ -63,8 +63,11 @@ private:
 
 class TileWorker : TileParts {
 public:
-    TileWorker(const std::vector<PartView>& parts, const TriangleBins& bins, int side, const CoverageEngine& engine)
-        : TileParts(parts, bins, side), cover_by_vectors_(engine.cover_by_vectors) {}
+    /// `finds_volumes`: whether find_volumes() is called, or else work().
+    TileWorker(const std::vector<PartView>& parts, const TriangleBins& bins, int side, const CoverageEngine& engine,
+               bool finds_volumes)
+        : TileParts(parts, bins, side), cover_by_vectors_(engine.cover_by_vectors),
+          piece_limit_(finds_volumes ? kFineLimit : kHalfLimit) {}
 
     /// `slot`: the place of `out` among the results of a block.
     void work(uint32_t index, uint32_t slot, Scratch& s, TileResult& out) const {
@@ -226,7 +229,7 @@ private:
                     }
                     if (counts && has_caps)
                         cross_triangle(a, b, c, window, surface);
-                    wanted.pieces = counts && by_volume && by_vectors && fits_pieces(a, b, c, window.top);
+                    wanted.pieces = counts && by_volume && by_vectors && fits_pieces(a, b, c, window.top, piece_limit_);
                     if (counts && by_volume && !wanted.pieces)
                         add_pieces(a, b, c, window, surface);
                 }
@@ -264,6 +267,7 @@ private:
     }
 
     CoverByVectors cover_by_vectors_;
+    double piece_limit_;
 };
 
 } // namespace voxrt::voxelize

@@ -129,7 +129,7 @@ struct BlockVoxelizer::State {
                                     bool volumes = false) {
         lap();
         std::vector<TileResult> found(tiles.size());
-        const TileWorker worker(parts, bins, side, engine);
+        const TileWorker worker(parts, bins, side, engine, volumes);
         workers.run(tiles.size(), [&](size_t job, int thread) {
             if (!scratch[size_t(thread)])
                 scratch[size_t(thread)] = std::make_unique<Scratch>(side, objects, parts.size(), has_rule);
