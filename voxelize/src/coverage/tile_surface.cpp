@@ -22,15 +22,14 @@ void TileSurface::add_pieces(const ColumnPieces& columns, int count, int from, i
     for (int i = 0; i < count; ++i) {
         const int x = columns.x[i], y = columns.y[i], end = columns.z[i] + std::min(to, columns.voxels[i]);
         const int column = (y >> kBrickBits) * kTileBricks + (x >> kBrickBits), bit = column_bit(x, y);
-        double* pieces = nullptr;
-        int level = 0;
-        for (int z = columns.z[i] + from; z < end; ++z, ++level) {
-            if (level == 0 || (z & (kBrickSide - 1)) == 0)
-                pieces = pieces_at(column, z >> kBrickBits) + bit;
-            double* const piece = pieces + (z & (kBrickSide - 1)) * 64;
-            const double volume = columns.volumes[level][i];
-            piece[0] += volume;
-            piece[64] += columns.areas[level][i] - volume;
+        for (int z = columns.z[i] + from, level = 0; z < end;) {
+            const int slice = z & (kBrickSide - 1), count_here = std::min(end - z, kBrickSide - slice);
+            double* at = pieces_at(column, z >> kBrickBits).slices(slice, slice + count_here) + bit;
+            for (z += count_here; level < z - columns.z[i] - from; ++level, at += 64) {
+                const double volume = columns.volumes[level][i];
+                at[0] += volume;
+                at[64] += columns.areas[level][i] - volume;
+            }
         }
     }
 }

@@ -38,7 +38,25 @@ struct ShellBrick {
 
 /// What the triangles of a brick add to the volume of a voxel and of all above, by slice and bit; the last slice is the
 /// lowest of the brick above.
-using VolumePieces = std::array<double, kBrickVoxels + 64>;
+class VolumePieces {
+public:
+    VolumePieces() : begun_(0) {} // no memory is written of slices without pieces
+
+    /// Slices from … to, to be added to.
+    double* slices(int from, int to) {
+        for (uint32_t fresh = ((2u << to) - (1u << from)) & ~begun_; fresh != 0; fresh &= fresh - 1) {
+            std::fill_n(&values_[size_t(64 * std::countr_zero(fresh))], 64, 0.0);
+            begun_ |= fresh & (~fresh + 1);
+        }
+        return &values_[size_t(64 * from)];
+    }
+    /// Null where nothing is added.
+    const double* slice(int z) const { return begun_ >> z & 1 ? &values_[size_t(64 * z)] : nullptr; }
+
+private:
+    uint32_t begun_; // slices, by bit
+    std::array<double, kBrickVoxels + 64> values_;
+};
 
 /// A crossing whose bit is already set.
 struct RepeatedCrossing {
@@ -143,10 +161,10 @@ public:
 
     /// Receives from add_pieces what a triangle adds to the volume of voxel z, and to each above.
     void add_piece(int x, int y, int z, double area, double volume) {
-        double* const piece = pieces_at(locate(x, y).column, z >> kBrickBits) +
-                              (z & (kBrickSide - 1)) * 64 + column_bit(x - x_, y - y_);
-        piece[0] += volume;
-        piece[64] += area - volume;
+        const int slice = z & (kBrickSide - 1), bit = column_bit(x - x_, y - y_);
+        double* const slices = pieces_at(locate(x, y).column, z >> kBrickBits).slices(slice, slice + 1);
+        slices[bit] += volume;
+        slices[bit + 64] += area - volume;
     }
 
     /// The same for voxels z + from … z + to - 1 of the first `count` columns. In a file of its own, as add_row_slowly.
@@ -210,13 +228,13 @@ public:
 
 private:
     /// The pieces of a brick, made where there is none.
-    double* pieces_at(int column, int k) {
+    VolumePieces& pieces_at(int column, int k) {
         ShellBrick& brick = at(column, k);
         if (brick.pieces == kNone) {
             brick.pieces = uint32_t(pieces_.size());
-            pieces_.emplace_back().fill(0);
+            pieces_.emplace_back();
         }
-        return pieces_[brick.pieces].data();
+        return pieces_[brick.pieces];
     }
 
     Slices& row_of(uint32_t& row) {

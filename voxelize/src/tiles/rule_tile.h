@@ -77,21 +77,19 @@ public:
             owned_.push_back({code_of(column, k), object_, claimed});
     }
 
-    /// Adds volumes of the part in voxels of a brick, by slice and bit.
-    void add_volumes(int column, int k, const Slices& voxels, const std::array<double, kBrickVoxels>& volumes) {
-        const size_t slot = size_t(column) * size_t(filled_.height()) + size_t(k);
-        if (sum_rows_.empty())
-            sum_rows_.assign(size_t(kTileColumns) * size_t(filled_.height()), kNone);
-        uint32_t& row = sum_rows_[slot];
-        if (row == kNone) {
-            row = uint32_t(sums_.size());
-            sums_.emplace_back();
-            last_summands_.push_back(kNone);
-            summed_.push_back(slot);
-        }
+    /// Where the volumes of the part in a brick are to be written, by slice and bit. Only those count whose voxels
+    /// add_volumes() adds.
+    std::array<double, kBrickVoxels>& room_for_volumes(int column, int k) {
+        Sums& sums = sums_[row_of_sums(column, k)];
+        return sums.empty() ? sums.values() : more_volumes_;
+    }
+
+    /// Adds the volumes in voxels of a brick, which room_for_volumes() has got.
+    void add_volumes(int column, int k, const Slices& voxels) {
+        const uint32_t row = row_of_sums(column, k);
         summands_.push_back({voxels, part_, last_summands_[row]});
         last_summands_[row] = uint32_t(summands_.size() - 1);
-        sums_[row].add(voxels, volumes);
+        sums_[row].add(voxels, more_volumes_);
     }
 
     /// Appends the bricks of the tile, by code, and who owns their surface. Returns the voxels that volumes do not decide.
@@ -132,19 +130,13 @@ public:
     }
 
     /// Appends the volumes of the last object, and forgets it.
-    void take_volumes(std::vector<VoxelVolume>& volumes) {
+    void take_volumes(TileVolumes& volumes) {
         for (const size_t slot : summed_) {
             const auto column = int(slot / size_t(filled_.height())), k = int(slot % size_t(filled_.height()));
-            const uint64_t code = code_of(column, k) << 9;
-            const Slices surface = surface_.mask_of(*surface_.slots(column, k));
             const Slices whole = filled_.mask_of(*filled_.slots(column, k)); // by another part
-            for (int z = 0; z < kBrickSide; ++z)
-                for (uint64_t left = surface[z] & ~whole[z]; left != 0; left &= left - 1) {
-                    const int bit = std::countr_zero(left);
-                    const uint64_t place = morton(uint32_t(column_x(bit)), uint32_t(column_y(bit)), uint32_t(z));
-                    const double volume = sums_[sum_rows_[slot]].at(z, bit);
-                    volumes.push_back({object_, code | place, std::min(volume, 1.0)});
-                }
+            const Slices voxels = without(surface_.mask_of(*surface_.slots(column, k)), whole);
+            volumes.bricks.push_back({object_, code_of(column, k), voxels});
+            sums_[sum_rows_[slot]].append(voxels, volumes.values);
         }
         clear(tile_x_, tile_y_);
     }
@@ -157,9 +149,14 @@ private:
     public:
         Sums() : summed_{} {} // without the values
 
+        bool empty() const { return is_empty(summed_); }
+        std::array<double, kBrickVoxels>& values() { return values_; }
+
+        /// Adds to what there is; the first volumes are among the values already.
         void add(const Slices& voxels, const std::array<double, kBrickVoxels>& volumes) {
+            const bool is_first = empty();
             for (int z = 0; z < kBrickSide; ++z) {
-                for (uint64_t left = voxels[z]; left != 0; left &= left - 1) {
+                for (uint64_t left = is_first ? 0 : voxels[z]; left != 0; left &= left - 1) {
                     const auto place = size_t(z * 64 + std::countr_zero(left));
                     const bool has_sum = (summed_[z] & left & (~left + 1)) != 0;
                     values_[place] = has_sum ? values_[place] + volumes[place] : volumes[place];
@@ -167,7 +164,15 @@ private:
                 summed_[z] |= voxels[z];
             }
         }
-        double at(int z, int bit) const { return summed_[z] >> bit & 1 ? values_[size_t(z * 64 + bit)] : 0; }
+
+        /// Appends those of some voxels, slice by slice, 1 at most.
+        void append(const Slices& voxels, std::vector<double>& to) const {
+            for (int z = 0; z < kBrickSide; ++z)
+                for (uint64_t left = voxels[z]; left != 0; left &= left - 1) {
+                    const int bit = std::countr_zero(left);
+                    to.push_back(summed_[z] >> bit & 1 ? std::min(values_[size_t(z * 64 + bit)], 1.0) : 0);
+                }
+        }
 
         /// Fills the voxels whose sums are above a half. Returns those nearer to it than `error`.
         Slices add_halves(Slices& filled, double error) const {
@@ -192,6 +197,20 @@ private:
         Slices voxels;
         uint32_t part, before; // of the brick
     };
+
+    uint32_t row_of_sums(int column, int k) {
+        const size_t slot = size_t(column) * size_t(filled_.height()) + size_t(k);
+        if (sum_rows_.empty())
+            sum_rows_.assign(size_t(kTileColumns) * size_t(filled_.height()), kNone);
+        uint32_t& row = sum_rows_[slot];
+        if (row == kNone) {
+            row = uint32_t(sums_.size());
+            sums_.emplace_back();
+            last_summands_.push_back(kNone);
+            summed_.push_back(slot);
+        }
+        return row;
+    }
 
     /// Which bricks of a cube are solid in part, or solid with surface: bits by Morton code.
     Slices listed_in(const TileVoxels& tile, int base) const {
@@ -242,6 +261,7 @@ private:
     std::vector<Sums> sums_;
     std::vector<Summand> summands_;
     std::vector<uint32_t> last_summands_; // by row of sums_
+    std::array<double, kBrickVoxels> more_volumes_; // of a part, where another one has some
     double triangles_ = 0;                // of parts that ask for volumes
     uint32_t part_ = 0, object_ = 0;
     Rule rule_of_part_ = Rule::touch;
