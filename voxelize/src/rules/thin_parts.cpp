@@ -113,8 +113,7 @@ Slices find_thin(const RuleBricks& bricks, size_t i) {
         return {};
     BrickWindow<2> bulk;
     bulk.gather(bricks.sets(bricks.around(i), [](const RuleBrick& b) -> const Slices& { return b.filled; }));
-    bulk.keep_near_cubes();
-    return without(bricks[i].touched, bulk.middle());
+    return without(bricks[i].touched, bulk.near_cubes());
 }
 
 /// The voxels of a brick that are not filled, of thin parts or beside one of their voxels.
