@@ -34,14 +34,14 @@ class RuleBricks {
 public:
     /// `voxels`: what is touched; it must outlive this. `tiles`: their bricks, by code. `adds_whole`: bricks that are
     /// solid as a whole are added where a voxel beside them is not filled.
-    RuleBricks(const SparseVoxels& voxels, const std::vector<std::vector<RuleBrick>>& tiles, bool adds_whole)
-        : voxels_(voxels) {
-        join(tiles);
+    RuleBricks(const SparseVoxels& voxels, std::vector<std::vector<RuleBrick>> tiles, bool adds_whole)
+        : voxels_(voxels), tiles_(std::move(tiles)) {
+        join();
         index();
         std::vector<uint64_t> beside;
-        for (const RuleBrick& brick : bricks_)
+        for (const RuleBrick* brick : bricks_)
             if (adds_whole)
-                add_whole_beside(brick, beside);
+                add_whole_beside(*brick, beside);
         if (beside.empty())
             return;
         std::sort(beside.begin(), beside.end());
@@ -51,8 +51,8 @@ public:
     }
 
     size_t size() const { return bricks_.size(); }
-    RuleBrick& operator[](size_t i) { return bricks_[i]; }
-    const RuleBrick& operator[](size_t i) const { return bricks_[i]; }
+    RuleBrick& operator[](size_t i) { return *bricks_[i]; }
+    const RuleBrick& operator[](size_t i) const { return *bricks_[i]; }
 
     static constexpr uint32_t kEmpty = 0xFFFF'FFFF, kFull = 0xFFFF'FFFE;
 
@@ -67,7 +67,7 @@ public:
     /// The 3 x 3 x 3 bricks around brick `i`, itself in the middle: x + 3 y + 9 z. Those without a bit in `wanted` are
     /// not looked for.
     std::array<uint32_t, 27> around(size_t i, uint32_t wanted = 0x7FF'FFFF) const {
-        const uint64_t code = bricks_[i].code;
+        const uint64_t code = bricks_[i]->code;
         const uint32_t side = voxels_.depth > 3 ? 1u << (voxels_.depth - 3) : 1;
         uint64_t codes[3][3]; // by axis, of the coordinate before, its own and the one after
         bool is_in[3][3];
@@ -99,7 +99,7 @@ public:
         }();
         std::array<const Slices*, 27> found;
         for (size_t n = 0; n < 27; ++n)
-            found[n] = around[n] == kEmpty ? &none : around[n] == kFull ? &all : &of(bricks_[around[n]]);
+            found[n] = around[n] == kEmpty ? &none : around[n] == kFull ? &all : &of(*bricks_[around[n]]);
         return found;
     }
 
@@ -156,11 +156,11 @@ private:
                 return table_[at].cube;
     }
 
-    /// Joins the bricks of tiles, cube by cube.
-    void join(const std::vector<std::vector<RuleBrick>>& tiles) {
-        std::vector<std::span<const RuleBrick>> cubes;
+    /// Puts the bricks of tiles in order, cube by cube.
+    void join() {
+        std::vector<std::span<RuleBrick>> cubes;
         size_t count = 0;
-        for (const std::vector<RuleBrick>& tile : tiles) {
+        for (std::vector<RuleBrick>& tile : tiles_) {
             for (auto at = tile.begin(); at != tile.end();) {
                 const auto end = std::find_if(at, tile.end(),
                                               [&](auto& one) { return one.code >> kCubeBits != at->code >> kCubeBits; });
@@ -172,33 +172,29 @@ private:
         std::sort(cubes.begin(), cubes.end(), [](auto& a, auto& b) { return a.front().code < b.front().code; });
         bricks_.reserve(count);
         for (const auto& cube : cubes)
-            bricks_.insert(bricks_.end(), cube.begin(), cube.end());
+            for (RuleBrick& brick : cube)
+                bricks_.push_back(&brick);
     }
 
     /// Adds bricks that are solid as a whole, with codes in ascending order.
     void add_whole(const std::vector<uint64_t>& codes) {
-        LargeVector<RuleBrick> all;
-        all.reserve(bricks_.size() + codes.size());
-        auto next = codes.begin();
-        auto add_before = [&](uint64_t code) {
-            for (; next != codes.end() && *next < code; ++next) {
-                RuleBrick& whole = all.emplace_back(RuleBrick{*next, {}, {}, {}});
-                whole.touched.fill(~uint64_t{0});
-                whole.filled.fill(~uint64_t{0});
-            }
-        };
-        for (const RuleBrick& brick : bricks_) {
-            add_before(brick.code);
-            all.push_back(brick);
+        std::vector<RuleBrick>& added = tiles_.emplace_back(codes.size());
+        for (size_t i = 0; i < codes.size(); ++i) {
+            added[i].code = codes[i];
+            added[i].touched.fill(~uint64_t{0});
+            added[i].filled.fill(~uint64_t{0});
         }
-        add_before(~uint64_t{0});
-        bricks_ = std::move(all);
+        const size_t listed = bricks_.size();
+        for (RuleBrick& brick : added)
+            bricks_.push_back(&brick);
+        std::inplace_merge(bricks_.begin(), bricks_.begin() + ptrdiff_t(listed), bricks_.end(),
+                           [](auto* a, auto* b) { return a->code < b->code; });
     }
 
     void index() {
         size_t cubes = 0;
         for (size_t i = 0; i < bricks_.size(); ++i)
-            cubes += i == 0 || bricks_[i].code >> kCubeBits != bricks_[i - 1].code >> kCubeBits;
+            cubes += i == 0 || bricks_[i]->code >> kCubeBits != bricks_[i - 1]->code >> kCubeBits;
         int bits = 4;
         while (size_t{1} << bits < 2 * cubes)
             ++bits;
@@ -207,8 +203,8 @@ private:
         cubes_.clear();
         cubes_.reserve(cubes);
         for (size_t i = 0; i < bricks_.size(); ++i) {
-            const uint64_t code = bricks_[i].code >> kCubeBits;
-            if (i == 0 || code != bricks_[i - 1].code >> kCubeBits) {
+            const uint64_t code = bricks_[i]->code >> kCubeBits;
+            if (i == 0 || code != bricks_[i - 1]->code >> kCubeBits) {
                 size_t at = place_of(code);
                 while (table_[at].cube != kEmpty)
                     at = (at + 1) & (table_.size() - 1);
@@ -217,7 +213,7 @@ private:
                 cubes_.emplace_back().fill(
                     octant < voxels_.octant_codes.size() && bits_of(octant) >= kCubeBits ? kFull : kEmpty);
             }
-            cubes_.back()[size_t(bricks_[i].code & (kCubeBricks - 1))] = uint32_t(i);
+            cubes_.back()[size_t(bricks_[i]->code & (kCubeBricks - 1))] = uint32_t(i);
         }
         mark_full();
     }
@@ -269,7 +265,8 @@ private:
     }
 
     const SparseVoxels& voxels_;
-    LargeVector<RuleBrick> bricks_; // by code
+    std::vector<std::vector<RuleBrick>> tiles_; // and one more of bricks that are added
+    std::vector<RuleBrick*> bricks_;            // by code
     std::vector<std::array<uint32_t, kCubeBricks>> cubes_;
     std::vector<Entry> table_; // of cubes, by open addressing
     int shift_ = 60;

@@ -14,9 +14,8 @@ namespace {
 class RuledVoxels {
 public:
     RuledVoxels(const SparseVoxels& around, RuleFindings& findings)
-        : voxels_(around), only_(material_of_all()), bricks_(around, findings.bricks, only_ == 0),
+        : voxels_(around), only_(material_of_all()), bricks_(around, std::move(findings.bricks), only_ == 0),
           owned_(std::move(findings.owned)), mixed_(std::move(findings.mixed)) {
-        findings.bricks = {};
         std::sort(mixed_.begin(), mixed_.end(), [](const auto& a, const auto& b) { return a.code < b.code; });
         has_rivals_ = only_ == 0 && std::any_of(owned_.begin(), owned_.end(),
                                            [this](const auto& one) { return one.object != owned_[0].object; });
@@ -90,6 +89,9 @@ public:
     }
 
     void count_lost(const BrickArea& area, std::vector<int64_t>& lost) const {
+        if (lost.size() == 1) // the owner of all
+            for (size_t i = 0; i < bricks_.size(); ++i)
+                lost[0] += is_in(area, bricks_[i].code) ? count(bricks_[i].removed()) : 0;
         for (const OwnedSurface& part : owned_)
             if (is_in(area, part.code))
                 lost[part.object] += count(without(part.voxels, bricks_[bricks_.find(part.code)].filled));

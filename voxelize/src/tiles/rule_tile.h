@@ -24,8 +24,8 @@ struct HalfDoubt {
 
 class RuleTile {
 public:
-    /// For tiles of a grid of `side` voxels.
-    explicit RuleTile(int side) : filled_(side), surface_(side), mixed_(side) {}
+    /// For tiles of a grid of `side` voxels. `has_owners`: whether it is noted which object has which surface.
+    RuleTile(int side, bool has_owners) : filled_(side), surface_(side), mixed_(side), has_owners_(has_owners) {}
 
     /// Empties it for the tile at (tile_x, tile_y), in tiles.
     void clear(int tile_x, int tile_y) {
@@ -73,7 +73,7 @@ public:
             several[size_t(z)] |= mixed[size_t(z)];
         if (!is_empty(several))
             mixed_.claim(column, k, several, kAny, nullptr);
-        if (!is_empty(claimed))
+        if (has_owners_ && !is_empty(claimed))
             owned_.push_back({code_of(column, k), object_, claimed});
     }
 
@@ -96,6 +96,7 @@ public:
     std::vector<HalfDoubt> list(const TileVoxels& tile, std::vector<RuleBrick>& bricks,
                                 std::vector<OwnedSurface>& owned, std::vector<MixedSurface>& mixed) const {
         std::vector<HalfDoubt> doubts;
+        bricks.reserve(tile.bricks());
         for (int base = 0; base < tile.height(); base += kTileBricks) {
             const Slices listed = listed_in(tile, base);
             for (size_t word = 0; word < listed.size(); ++word)
@@ -256,6 +257,7 @@ private:
     }
 
     TileVoxels filled_, surface_, mixed_;
+    bool has_owners_;
     std::vector<uint32_t> sum_rows_; // by slot: where the sums of volumes stand
     std::vector<size_t> summed_;     // the slots that have some
     std::vector<Sums> sums_;

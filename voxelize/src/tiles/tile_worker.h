@@ -22,7 +22,7 @@ inline constexpr double kNotedOpening = 0.01;
 /// What a thread keeps from tile to tile.
 struct Scratch {
     Scratch(int side, size_t objects, size_t parts, bool has_rule)
-        : surface(side), tile(side), rule(has_rule ? std::make_unique<RuleTile>(side) : nullptr),
+        : surface(side), tile(side), rule(has_rule ? std::make_unique<RuleTile>(side, objects > 1) : nullptr),
           object_voxels(objects, 0), shell_of_open(objects, 0), inside_of_open(objects, 0), overlaps_itself(parts, 0) {
         fill.use_rule(rule.get());
     }
