@@ -166,19 +166,24 @@ private:
         const auto filled = [this](uint32_t n) { return bricks_[n].filled; };
         const auto removed_mixed = [this](uint32_t n) { return without(mixed_in(bricks_[n].code), bricks_[n].filled); };
         const auto orphans = [this](uint32_t n) { return orphans_[n]; };
-        const BrickMaterials own = materials_of(voxels_, brick.code);
-        bool is_uniform = own.cells == nullptr;
         Slices lost[6], mixed = mixed_in(brick.code), forced{}, any = mixed, visible{};
-        BrickMaterials beside[6];
         for (int side = 0; side < 6; ++side) {
             lost[side] = RuleBricks::shifted_by(around, side, removed, false);
+            for (size_t z = 0; z < kBrickSide; ++z)
+                any[z] |= lost[side][z] & brick.filled[z];
+        }
+        if (is_empty(any))
+            return;
+        const BrickMaterials own = materials_of(voxels_, brick.code);
+        bool is_uniform = own.cells == nullptr;
+        BrickMaterials beside[6];
+        for (int side = 0; side < 6; ++side) {
             const Slices lost_mixed = RuleBricks::shifted_by(around, side, removed_mixed, false);
             const Slices lying = RuleBricks::shifted_by(around, side, orphans, false);
             const Slices hidden = RuleBricks::shifted_by(around, side, filled, true);
             for (size_t z = 0; z < kBrickSide; ++z) {
                 visible[z] |= ~hidden[z];
                 mixed[z] |= lost_mixed[z];
-                any[z] |= lost[side][z] & brick.filled[z];
                 forced[z] |= lying[z] & brick.surface[z];
             }
             const uint32_t other = around[size_t(kSides[side])];
