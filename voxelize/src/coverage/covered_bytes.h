@@ -105,7 +105,8 @@ struct IntervalBytes {
         constexpr float height = 8 * kBricks;
         FourInts within[2], marks_within[2];
         for (int half = 0; half < 2; ++half) {
-            const FourFloats from = less(load_four(lo + 4 * half), base), mark = less(load_four(marks + 4 * half), base);
+            const FourFloats from = less(load_four(lo + 4 * half), base),
+                             mark = less(load_four(marks + 4 * half), base);
             const FourFloats end = less(load_four(hi + 4 * half), base - 1);
             const FourFloats lowest = power_of_two(clamped(from, 0, height));
             within[half] = whole(clamped(difference(power_of_two(clamped(end, 0, height)), lowest), 0, 1 << 24));

@@ -12,8 +12,8 @@ namespace voxrt::voxelize {
 bool fits_vectors(const Vertex& a, const Vertex& b, const Vertex& c);
 
 /// Whether they find the pieces of triangle abc (volume_pieces.h), too: it fits vectors, is no higher than voxel `top`,
-/// and not upright, and its extent in voxels, times its slope or 1, is below `limit`: kFineLimit for errors below 2^-42,
-/// kHalfLimit for errors below 2^-34.
+/// and not upright, and its extent in voxels, times its slope or 1, is below `limit`: kFineLimit for errors below
+/// 2^-42, kHalfLimit for errors below 2^-34.
 bool fits_pieces(const Vertex& a, const Vertex& b, const Vertex& c, int top, double limit);
 inline constexpr double kFineLimit = 0x1p7, kHalfLimit = 0x1p15;
 

@@ -177,8 +177,8 @@ public:
 private:
     bool enters_;
     double per_unit_;
-    Rest unit_, carry_; // carry_: which rest makes one more than height_
-    Lanes height_;      // (spread - 1) / unit
+    Rest unit_, carry_;      // carry_: which rest makes one more than height_
+    Lanes height_;           // (spread - 1) / unit
     Quotients<Rest> corner_; // from where the plane is lowest in a column to the column's lowest corner
     Quotients<Rest> centre_; // and to its centre, less half a voxel
     Quotients<Rest> row_, next_row_, group_, next_group_;

@@ -88,8 +88,8 @@ private:
         return found;
     }
 
-    /// Replaces the rows of the brick and its margin by what `of` makes of them and those near, eight at a time. The ends
-    /// of neighbouring planes touch: after three such steps, rows less than three from an end may be wrong.
+    /// Replaces the rows of the brick and its margin by what `of` makes of them and those near, eight at a time. The
+    /// ends of neighbouring planes touch: after three such steps, rows less than three from an end may be wrong.
     template <class Of> void each(Of of) {
         alignas(16) Rows made;
         constexpr size_t first = size_t(kFirst - margin) * kPlane, end = size_t(kFirst + kBrickSide + margin) * kPlane;

@@ -162,8 +162,8 @@ private:
         size_t count = 0;
         for (std::vector<RuleBrick>& tile : tiles_) {
             for (auto at = tile.begin(); at != tile.end();) {
-                const auto end = std::find_if(at, tile.end(),
-                                              [&](auto& one) { return one.code >> kCubeBits != at->code >> kCubeBits; });
+                const auto end = std::find_if(
+                    at, tile.end(), [&](auto& one) { return one.code >> kCubeBits != at->code >> kCubeBits; });
                 cubes.emplace_back(at, end);
                 at = end;
             }

@@ -18,7 +18,7 @@ public:
           owned_(std::move(findings.owned)), mixed_(std::move(findings.mixed)) {
         std::sort(mixed_.begin(), mixed_.end(), [](const auto& a, const auto& b) { return a.code < b.code; });
         has_rivals_ = only_ == 0 && std::any_of(owned_.begin(), owned_.end(),
-                                           [this](const auto& one) { return one.object != owned_[0].object; });
+                                                [this](const auto& one) { return one.object != owned_[0].object; });
         if (!has_rivals_)
             return; // their order does not matter
         std::sort(owned_.begin(), owned_.end(), [](const OwnedSurface& a, const OwnedSurface& b) {

@@ -22,7 +22,7 @@ namespace voxrt::voxelize {
 /// What the tiles of a rule found.
 struct RuleFindings {
     std::vector<std::vector<RuleBrick>> bricks; // by tile
-    std::vector<OwnedSurface> owned; // where there are several objects
+    std::vector<OwnedSurface> owned;            // where there are several objects
     std::vector<MixedSurface> mixed;
 };
 

@@ -111,9 +111,8 @@ Slices thin_alone(const RuleBrick& brick) {
 uint32_t bricks_near(const Slices& voxels) {
     constexpr uint64_t first_two = 0x0303'0303'0303'0303;
     const uint64_t any = any_of(voxels);
-    const bool reaches[6] = {(any & first_two) != 0,         (any & first_two << 6) != 0,
-                             (any & 0xFFFF) != 0,            any >> 48 != 0,
-                             (voxels[0] | voxels[1]) != 0,   (voxels[6] | voxels[7]) != 0};
+    const bool reaches[6] = {(any & first_two) != 0, (any & first_two << 6) != 0,  (any & 0xFFFF) != 0,
+                             any >> 48 != 0,         (voxels[0] | voxels[1]) != 0, (voxels[6] | voxels[7]) != 0};
     uint32_t found = kMiddle;
     for (int axis = 0, step = 1; axis < 3; ++axis, step *= 3)
         found |= (reaches[2 * axis] ? found >> step : 0) | (reaches[2 * axis + 1] ? found << step : 0);

@@ -92,7 +92,8 @@ public:
         sums_[row].add(voxels, more_volumes_);
     }
 
-    /// Appends the bricks of the tile, by code, and who owns their surface. Returns the voxels that volumes do not decide.
+    /// Appends the bricks of the tile, by code, and who owns their surface. Returns the voxels that volumes do not
+    /// decide.
     std::vector<HalfDoubt> list(const TileVoxels& tile, std::vector<RuleBrick>& bricks,
                                 std::vector<OwnedSurface>& owned, std::vector<MixedSurface>& mixed) const {
         std::vector<HalfDoubt> doubts;
@@ -117,9 +118,9 @@ public:
     /// d = 2^-40.8 of those of the true piece. In a cell a piece has a perimeter below 6 and an area below 1.5, so the
     /// area seen from above is wrong by 6 d at most and the volume by 8 d, once per triangle and column: pieces of one
     /// column share the corners where planes between its voxels cut. Rounding in the cell is a few u per piece, of at
-    /// most 2^16. Whole cells below a plane have an error of 32 u; vector_pieces.h has less than its cuts. All that is
-    /// below 2^-32 per triangle. Sums of N numbers up to N in size add N^2 u, and those along 2^16 voxels of a column
-    /// N 2^-37.
+    /// most 2^16. Whole cells below a plane have an error of 32 u; vector_pieces.h stays below 2^-34 (kHalfLimit). All
+    /// that is below 2^-32 per triangle. Sums of N numbers up to N in size add N^2 u, and those along 2^16 voxels of a
+    /// column N 2^-37.
     double error_bound() const { return triangles_ * 0x1p-31 + triangles_ * triangles_ * 0x1p-52; }
 
     /// Calls take(part) with the parts whose volumes a voxel of a brick sums.
@@ -262,9 +263,9 @@ private:
     std::vector<size_t> summed_;     // the slots that have some
     std::vector<Sums> sums_;
     std::vector<Summand> summands_;
-    std::vector<uint32_t> last_summands_; // by row of sums_
+    std::vector<uint32_t> last_summands_;           // by row of sums_
     std::array<double, kBrickVoxels> more_volumes_; // of a part, where another one has some
-    double triangles_ = 0;                // of parts that ask for volumes
+    double triangles_ = 0;                          // of parts that ask for volumes
     uint32_t part_ = 0, object_ = 0;
     Rule rule_of_part_ = Rule::touch;
     int tile_x_ = 0, tile_y_ = 0; // in tiles

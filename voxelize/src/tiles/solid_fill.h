@@ -321,7 +321,7 @@ private:
 
     RuleTile* rule_ = nullptr;
     bool is_capped_ = false;
-    std::array<double, 64> below_{};             // by column: the volume below the slice, per voxel
+    std::array<double, 64> below_{}; // by column: the volume below the slice, per voxel
     std::vector<RepeatedCrossing> repeated_;
     GeneralizedInside inside_;
     std::vector<int> numbers_; // winding numbers of the capped surface in a brick, by slice and bit

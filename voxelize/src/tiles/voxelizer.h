@@ -31,12 +31,12 @@
 
 #include "../grid/sparse_voxels.h"
 #include "../rules/rule.h"
-#include "../rules/voxel_volume.h"
 #include "../scene/object_mode.h"
 #include "../scene/parts.h"
 #include "../work/interrupt.h"
 #include "../work/large_vector.h"
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <string>
