@@ -203,11 +203,11 @@ struct Area {
     int x0, x1, y0, y1, top;
 };
 
-template <class Wide, class Rest>
+template <class Wide, class Rest, bool centres>
 inline void cover_area(const Corners& t, const Area& area, const Wanted& wanted, Pieces* pieces, TileSurface& surface) {
     const auto [x0, x1, y0, y1, top] = area;
     const int first_group = x0 / kLanes, first_column = first_group * kLanes;
-    const Rows rows(t, y0, y1 - y0 + 1, x0, x1, top, wanted.crosses, wanted.centres ? kCentre : kSample);
+    const Rows rows(t, y0, y1 - y0 + 1, x0, x1, top, wanted.crosses, centres ? kCentre : kSample);
     Extents columns;
     find_columns(t, first_column, x1 - first_column + 1, columns);
     PlaneRows<Wide, Rest> plane(t, first_column, y0);
@@ -217,7 +217,7 @@ inline void cover_area(const Corners& t, const Area& area, const Wanted& wanted,
         if (from > to || row_lo > row_hi)
             continue;
         const int highest = static_cast<int>(row_hi), first_brick = static_cast<int>(row_lo) >> kBrickBits,
-                  last_brick = (highest + (wanted.centres && highest < top)) >> kBrickBits;
+                  last_brick = (highest + (centres && highest < top)) >> kBrickBits;
         const uint64_t covered = bits_between(from, to);
         const uint64_t crossed = bits_between(rows.crossed_from[row], rows.crossed_to[row]);
         plane.begin_row();
@@ -231,11 +231,11 @@ inline void cover_area(const Corners& t, const Area& area, const Wanted& wanted,
             z.hi = smaller(z.hi, all(row_hi));
             plane.narrow(z);
             z.lo = smaller(z.lo, all(kBeyond)); // all fit 32 bits
-            alignas(32) int32_t lo[kLanes], hi[kLanes], centres[kLanes];
-            if (wanted.centres) {
+            alignas(32) int32_t lo[kLanes], hi[kLanes], above[kLanes];
+            if constexpr (centres) {
                 Mask on;
                 const Lanes below = smaller(larger(plane.centres(on), all(-kBeyond)), all(kBeyond));
-                store_as_int(centres, if_less(below, all(top), below + all(1), all(kBeyond)));
+                store_as_int(above, if_less(below, all(top), below + all(1), all(kBeyond)));
                 uint64_t held = wanted.holds ? on & (covered >> group * kLanes) : 0;
                 for (alignas(64) double heights[kLanes]; held != 0; held &= held - 1) {
                     store(heights, below);
@@ -247,13 +247,13 @@ inline void cover_area(const Corners& t, const Area& area, const Wanted& wanted,
             store_as_int(lo, z.lo);
             store_as_int(hi, larger(z.hi, z.lo - all(1)));
             if (pieces != nullptr) {
-                alignas(64) double above[kLanes];
-                store(above, plane.above_corners(z.lo));
+                alignas(64) double above_corners[kLanes];
+                store(above_corners, plane.above_corners(z.lo));
                 const uint64_t columns = covered >> group * kLanes & 0xFF & ~uint64_t{less(z.hi, z.lo)};
-                pieces->add_columns(columns, group, y, lo, hi, above);
+                pieces->add_columns(columns, group, y, lo, hi, above_corners);
             }
             for (int brick = first_brick; brick <= last_brick; brick += IntervalBytes::kBricks) {
-                const IntervalBytes bytes(lo, hi, wanted.centres ? centres : lo, brick * kBrickSide);
+                const IntervalBytes bytes(lo, hi, centres ? above : lo, brick * kBrickSide);
                 for (int i = 0; i < IntervalBytes::kBricks && brick + i <= last_brick; ++i) {
                     const ColumnBytes marked = bytes.marked[i] & crossing;
                     if ((bytes.inside[i] & inside) != 0)
@@ -292,18 +292,21 @@ void VOXRT_COVER_BY_VECTORS(const Vertex& a, const Vertex& b, const Vertex& c, c
         return high - low;
     };
     const Area area{x0, x1, y0, y1, w.top};
-    if (!(width(t.x) < kNarrowExtent && width(t.y) < kNarrowExtent && width(t.z) < kNarrowExtent)) {
-        cover_area<int128, LongLanes>(t, area, wanted, nullptr, surface);
-    } else if (!wanted.pieces) {
-        cover_area<int64_t, Lanes>(t, area, wanted, nullptr, surface);
-    } else {
-        double z[3];
-        for (int i = 0; i < 3; ++i)
-            z[i] = corners[i]->z;
-        Pieces pieces(t.x, t.y, z, surface);
-        cover_area<int64_t, Lanes>(t, area, wanted, &pieces, surface);
-        pieces.finish();
+    const bool narrow = width(t.x) < kNarrowExtent && width(t.y) < kNarrowExtent && width(t.z) < kNarrowExtent;
+    const auto cover = narrow && wanted.centres ? cover_area<int64_t, Lanes, true>
+                       : narrow                 ? cover_area<int64_t, Lanes, false>
+                       : wanted.centres         ? cover_area<int128, LongLanes, true>
+                                                : cover_area<int128, LongLanes, false>;
+    if (!wanted.pieces) {
+        cover(t, area, wanted, nullptr, surface);
+        return;
     }
+    double z[3];
+    for (int i = 0; i < 3; ++i)
+        z[i] = corners[i]->z;
+    Pieces pieces(t.x, t.y, z, surface);
+    cover(t, area, wanted, &pieces, surface);
+    pieces.finish();
 }
 
 } // namespace voxrt::voxelize
