@@ -50,17 +50,6 @@ private:
     TileSurface& surface_;
 };
 
-/// Receiver of find_centres for volumes, to which centres mean nothing.
-class CrossingsAlone {
-public:
-    explicit CrossingsAlone(TileSurface& surface) : surface_(surface) {}
-    void cross(int x, int y, int z, bool enters) { surface_.cross(x, y, z, enters); }
-    void hold(int, int, int, int) {}
-
-private:
-    TileSurface& surface_;
-};
-
 class TileWorker : TileParts {
 public:
     /// `finds_volumes`: whether find_volumes() is called, or else work().
@@ -216,17 +205,11 @@ private:
                     cover_triangle<false>(a, b, c, window, analysis.inverted, held);
                 } else {
                     const bool by_volume = part.rule == Rule::half && !has_caps;
-                    if (by_vectors && !is_upright(a, b, c)) {
-                        wanted = {counts && !has_caps, true, !by_volume};
-                    } else if (by_volume) {
-                        CrossingsAlone crossings(surface);
-                        if (counts)
-                            find_centres<true>(a, b, c, window, crossings);
-                    } else if (counts && !has_caps) {
-                        find_centres<true>(a, b, c, window, surface);
-                    } else {
-                        find_centres<false>(a, b, c, window, surface);
-                    }
+                    const bool crosses = counts && !has_caps;
+                    if (by_vectors && !is_upright(a, b, c))
+                        wanted = {crosses, true, !by_volume};
+                    else if (crosses || !by_volume)
+                        find_centres(a, b, c, window, crosses, !by_volume, surface);
                     if (counts && has_caps)
                         cross_triangle(a, b, c, window, surface);
                     wanted.pieces = counts && by_volume && by_vectors && fits_pieces(a, b, c, window.top, piece_limit_);
