@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 HERE = Path(__file__).resolve().parent
 
-NEEDED = ("msgspec", "pillow", "rich", "manifold3d", "websockets")
+NEEDED = ("msgspec", "pillow", "rich", "manifold3d", "websockets", "pyserial")
 """Of the dependencies of voxrt those that scenes of Blender need; Blender itself has NumPy."""
 
 _PLATFORMS = {"linux": "linux-x64", "darwin": "macos-arm64", "win32": "windows-x64"}
