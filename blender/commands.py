@@ -6,16 +6,28 @@ import os
 import subprocess
 import sys
 import tempfile
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import bpy
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from .sender import Upload
-
 _SECONDS = 0.2  # between looks at a command that runs
+
+
+class Work(Protocol):
+    """What takes a while, beside what Blender does."""
+
+    @property
+    def ended(self) -> bool:
+        """Whether it has ended."""
+
+    def outcome(self) -> tuple[bool, str]:
+        """Wait for its end. Return whether it did what it should, and a line about it."""
+
+    def stop(self) -> None:
+        """End it, or let it end by itself."""
 
 
 class RunningCommand:
@@ -101,9 +113,9 @@ class Watch:
 
     def __init__(self) -> None:
         self.line = ""
-        self._command: RunningCommand | Upload | None = None
+        self._command: Work | None = None
 
-    def follow(self, command: RunningCommand | Upload) -> None:
+    def follow(self, command: Work) -> None:
         """Wait for a command, beside what Blender does."""
         self.stop()
         self._command, self.line = command, "running"

@@ -13,7 +13,7 @@ import voxrt
 from voxrt.export.blob import blob_bytes
 from voxrt.voxelize.formats.blend.rendered import as_rendered
 
-from .commands import WATCH, RunningCommand
+from .commands import WATCH, RunningCommand, Work
 from .engine import ERRORS, final_view
 from .memory import LATEST, build_animation, build_scene
 from .online import check_online
@@ -116,7 +116,7 @@ class VoxrtForget(_Operator):
         return "frames are built one by one"
 
 
-class _Work(_Operator):
+class _LongOperator(_Operator):
     """An operator that begins what takes a while. Blender goes on, and the panel shows what comes of it."""
 
     def execute(self, context: Any) -> set[str]:
@@ -134,12 +134,12 @@ class _Work(_Operator):
         self.report({"INFO" if succeeded else "ERROR"}, line)
         return {"FINISHED" if succeeded else "CANCELLED"}
 
-    def begin(self, context: Any) -> RunningCommand | Upload | None:
+    def begin(self, context: Any) -> Work | None:
         """Begin it; None where there is nothing to do."""
         raise NotImplementedError
 
 
-class VoxrtSend(_Work):
+class VoxrtSend(_LongOperator):
     """Show the scene on the server or the board whose address is above"""
 
     bl_idname = "voxrt.send"
@@ -160,7 +160,7 @@ class VoxrtSend(_Work):
         return upload
 
 
-class VoxrtBitstream(_Work):
+class VoxrtBitstream(_LongOperator):
     """Make the bitstream of a board that shows the scene, turning"""
 
     bl_idname = "voxrt.bitstream"

@@ -228,7 +228,7 @@ def test_live_sends_at_rest(server, monkeypatch):
     bpy.app.timers.unregister(live.send_at_rest)
 
 
-def asked(board):
+def counters_of(board):
     """Count how often a host opens the board, and the words of its octree that it writes."""
     get, put, opened, written = board.get, board.put, [], []
     board.get = lambda address: (opened.append(address == 0x1000), get(address))[1]
@@ -253,7 +253,7 @@ def test_live_opens_the_line_of_a_board_once(monkeypatch):
 
     monkeypatch.setattr(live, "REST_SECONDS", 0.0)
     scene, board = stage(depth=4), Board(core=BlindCore())
-    opened, written = asked(board)
+    opened, written = counters_of(board)
     with serial_line(board) as address:
         scene.voxrt.address, scene.voxrt.live = address, True
         taken = []
@@ -287,7 +287,7 @@ def test_a_board_that_is_unplugged_is_told_and_found_again():
     from voxrt_extension.sender import SENDERS
 
     scene, board = stage(depth=4), Board(core=BlindCore())
-    opened, _ = asked(board)
+    opened, _ = counters_of(board)
     with serial_line(board) as address:
         scene.voxrt.address, scene.voxrt.live = address, True
         assert bpy.ops.voxrt.send() == {"FINISHED"}
