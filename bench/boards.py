@@ -2,26 +2,29 @@
 
 Needs the folder in which ``python -m voxrt.board.designs.build NAME --netlist`` worked, and a C++ compiler. The
 netlist after place and route is simulated with what was patched into its ``.config`` or ``.fs``: a monitor decodes the
-DVI pins, and the frames are compared with the exact model's, on three scenes, and after a swap by the serial line. With
-``--rebuilt``, one scene is built into the design from its sources as well, which takes another place and route: both
-``.config`` must be equal. ``--write`` writes ``report.md`` beside the board's description.
+DVI pins, and the frames are compared with the exact model's, on three scenes, and after a swap and edits by the serial
+line. With ``--rebuilt``, one scene is built into the design from its sources as well, which takes another place and
+route: both ``.config`` must be equal. ``--write`` writes ``report.md`` beside the board's description.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import math
 import os
 import sys
 import tempfile
 import time
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
+from unittest.mock import patch
 
 import numpy as np
 
-from voxrt.board.designs import build
+from voxrt.board.designs import build, serial_device
 from voxrt.board.designs.base_design import Slice, patch_config
 from voxrt.board.designs.boot_table import (
     BOARD_REGISTERS,
@@ -37,15 +40,21 @@ from voxrt.board.designs.boot_table import (
     scene_writes,
 )
 from voxrt.board.designs.gowin_bitstream import BlockRams, patch_fs
+from voxrt.board.designs.serial_device import SerialDevice
+from voxrt.board.designs.serial_link import SerialLink
 from voxrt.board.designs.simulation import placed_gowin, placed_netlist
 from voxrt.board.designs.simulation.board_simulation import BoardSimulation, compile_placed
 from voxrt.board.register_writes import camera_writes
+from voxrt.board.scene_memory import SceneMemory
+from voxrt.board.simulated.model import ModelDevice
 from voxrt.board.view import Lighting
 from voxrt.boards.board_scenes import load_scene
+from voxrt.octree import Sphere
 from voxrt.octree.words import move_pointers
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "tests"))
 from fakes.board_host import Host, cameras_around, picture
+from fakes.simulated_port import SimulatedPort
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -157,7 +166,33 @@ def verify_scene(placed: Placed, file: str, scene: Scene, new: Scene | None, wor
             after = simulation.frames(placed.black + 2)[-1][0]
             equal = np.array_equal(after, picture(new, orbit(new)[9], SCALE))
             note("planet.glb, sent by the serial line, is the exact model's picture", holds=equal)
+            equal = edits_are_shown(simulation, new, orbit(new)[9], placed.black)
+            note("edits of it by the serial line are the exact model's pictures", holds=equal)
     return found
+
+
+def edits_are_shown(simulation: BoardSimulation, scene: Scene, camera: Camera, black: int) -> bool:
+    """Edit the scene that a board shows, as voxrt serve does; tell whether the monitor shows each edit."""
+    before, equal = picture(scene, camera, SCALE), True
+    with patch.object(serial_device, "_WAIT_SECONDS", math.inf):  # a simulated frame takes many
+        device = SerialDevice(SerialLink("the simulation", SimulatedPort(simulation)), ModelDevice())
+        memory = SceneMemory(device, device.loaded())
+        world = memory.world_of(scene)
+        memory.begin_edits(world, scene)
+        side, middle = world.size, world.size // 2
+        edits = (
+            lambda: world.set([[1, height, side - 2] for height in range(side)], 1),
+            lambda: world.fill(Sphere((middle, side, middle), middle), 0),
+            world.undo,
+        )
+        for edit in edits:
+            edit()
+            memory.show_edits(scene)
+            after = picture(replace(scene, words=world.rom().octree.words), camera, SCALE)
+            shown = simulation.frames(black + 1)[-1][0]
+            equal = equal and np.array_equal(shown, after) and not np.array_equal(after, before)
+            before = after
+    return equal
 
 
 def report(described: dict[str, Any], title: str, checks: list[tuple[str, bool]], seconds: float) -> str:

@@ -1,10 +1,10 @@
 """Which rule looks right: previews by each rule beside reference pictures of their sources, at equal depth and words.
 
 Usage: ``python bench/rule_likeness.py [--write] [--only WORD]``. The assets and the reference pictures are those of
-``bench/likeness.py``. Each asset is built at depths 5 to 8 by ``touch``, by ``centre``, and by ``centre`` without its
-thin parts, and seen by one camera per depth. Figures are SSIM and PSNR of whole pictures. Words at one depth differ, so
-each rule is also held against ``touch`` at equal words: its figures between two depths are taken from a straight line
-over the logarithm of the words.
+``bench/likeness.py``. Each asset is built at depths 5 to 8 by each rule, with thin parts and without them, and seen by
+one camera per depth. Figures are SSIM and PSNR of whole pictures. Words at one depth differ, so each rule is also held
+against ``touch`` at equal words: its figures between two depths are taken from a straight line over the logarithm of
+the words.
 """
 
 from __future__ import annotations
@@ -22,7 +22,11 @@ from voxrt.voxelize import AssetError
 from voxrt.voxelize.colour.srgb import linear_from_srgb, srgb_from_linear
 
 DEPTHS, SIZE, FINER, SKY_RAYS = range(5, 9), (160, 120), 2, 16
-RULES = {"touch": {}, "centre": {"rule": "centre"}, "centre, thin dropped": {"rule": "centre", "thin": "drop"}}
+RULES = {"touch": {}} | {
+    rule + ending: {"rule": rule} | thin
+    for rule in ("centre", "half")
+    for ending, thin in (("", {}), (", thin dropped", {"thin": "drop"}))
+}
 
 
 def measure(name: str) -> dict[str, np.ndarray]:
@@ -85,7 +89,7 @@ def main() -> None:
                 mean = np.nanmean(gain, axis=0) if np.isfinite(gain).any() else np.full(2, np.nan)
                 nearer.setdefault((rule, kind), []).append(mean > 0)
                 gains.setdefault((rule, kind), []).append(mean)
-                cells += [f"{mean[0]:+.3f}", f"{mean[1]:+.1f}"]
+                cells.append(f"{mean[0]:+.3f} / {mean[1]:+.1f}")
         rows.append((f"`{name}`", *cells))
         print(*rows[-1], flush=True)
     summary = []
@@ -93,12 +97,12 @@ def main() -> None:
         ssim, psnr = np.nanmean(gains[rule, kind], axis=0)
         counts = (f"{count} of {len(rows)}" for count in np.sum(better, axis=0))
         summary.append((rule, f"equal {kind}", *counts, f"{ssim:+.3f}", f"{psnr:+.2f}"))
-    head = ("asset", *(f"{rule}, {kind}: {what}" for rule, kind in nearer for what in ("SSIM", "PSNR")))
+    head = ("asset", *(f"{rule}, {kind}" for rule, kind in nearer))
     page = (
         "# Which rule looks right\n\n"
         f"Previews at depths {DEPTHS[0]} to {DEPTHS[-1]} against reference pictures of their triangles, by "
         "`bench/rule_likeness.py`: how much\nnearer than `touch` each rule is, on average over the depths. PSNR is in "
-        "dB.\n\n"
+        "dB. Cells of assets: SSIM / PSNR.\n\n"
         + table(("rule", "at", "nearer by SSIM", "nearer by PSNR", "SSIM", "PSNR"), summary, 2)
         + "\n"
         + table(head, rows, 1)

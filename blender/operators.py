@@ -7,14 +7,17 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 import bpy
-from bpy.props import EnumProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, StringProperty
 
 import voxrt
+from voxrt.export.blob import blob_bytes
 from voxrt.voxelize.formats.blend.rendered import as_rendered
 
-from .commands import WATCH, RunningCommand
+from .commands import WATCH, RunningCommand, Work
 from .engine import ERRORS, final_view
 from .memory import LATEST, build_animation, build_scene
+from .online import check_online
+from .sender import SENDERS, Upload
 
 _FORMATS = [
     (".mem", "Memory (.mem)", "Words for $readmemh, with a manifest"),
@@ -113,42 +116,51 @@ class VoxrtForget(_Operator):
         return "frames are built one by one"
 
 
-class _Command(_Operator):
-    """An operator that builds the memory and runs a command of voxrt with it, while Blender goes on."""
+class _LongOperator(_Operator):
+    """An operator that begins what takes a while. Blender goes on, and the panel shows what comes of it."""
 
     def execute(self, context: Any) -> set[str]:
-        folder = tempfile.TemporaryDirectory(prefix="voxrt-")
-        file = Path(folder.name, "scene.blob")
         try:
-            voxrt.convert(build_scene(context).blob, file)
+            work = self.begin(context)
         except (*ERRORS, voxrt.OutputError, OSError) as error:
-            folder.cleanup()
             self.report({"ERROR"}, f"voxrt: {error}")
             return {"CANCELLED"}
-        command = RunningCommand(self.arguments(context, file), folder)
-        if not bpy.app.background:
-            WATCH.follow(command)
+        if work is None:
             return {"FINISHED"}
-        succeeded, line = command.outcome()
+        if not bpy.app.background:
+            WATCH.follow(work)
+            return {"FINISHED"}
+        succeeded, line = work.outcome()
         self.report({"INFO" if succeeded else "ERROR"}, line)
         return {"FINISHED" if succeeded else "CANCELLED"}
 
-    def arguments(self, context: Any, file: Path) -> list[str]:
-        """Return the command and its arguments for a memory's file."""
+    def begin(self, context: Any) -> Work | None:
+        """Begin it; None where there is nothing to do."""
         raise NotImplementedError
 
 
-class VoxrtSend(_Command):
+class VoxrtSend(_LongOperator):
     """Show the scene on the server or the board whose address is above"""
 
     bl_idname = "voxrt.send"
     bl_label = "Send"
 
-    def arguments(self, context: Any, file: Path) -> list[str]:  # noqa: D102
-        return ["upload", str(file), "--to", context.scene.voxrt.address]
+    changed_only: BoolProperty(options={"HIDDEN", "SKIP_SAVE"})  # type: ignore[valid-type]
+
+    def begin(self, context: Any) -> Upload | None:  # noqa: D102
+        settings = context.scene.voxrt
+        check_online(settings.address)
+        blob = blob_bytes(build_scene(context).blob)
+        sender = SENDERS.to(settings.address)
+        if self.changed_only and sender.holds(blob):
+            return None
+        upload = sender.send(blob)
+        if not settings.live:
+            SENDERS.close()
+        return upload
 
 
-class VoxrtBitstream(_Command):
+class VoxrtBitstream(_LongOperator):
     """Make the bitstream of a board that shows the scene, turning"""
 
     bl_idname = "voxrt.bitstream"
@@ -164,8 +176,12 @@ class VoxrtBitstream(_Command):
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
-    def arguments(self, context: Any, file: Path) -> list[str]:  # noqa: D102, ARG002
-        return ["bitstream", str(file), "--board", self.board, "-o", bpy.path.abspath(self.directory)]
+    def begin(self, context: Any) -> RunningCommand:  # noqa: D102
+        folder = tempfile.TemporaryDirectory(prefix="voxrt-")
+        file = Path(folder.name, "scene.blob")
+        voxrt.convert(build_scene(context).blob, file)
+        target = bpy.path.abspath(self.directory)
+        return RunningCommand(["bitstream", str(file), "--board", self.board, "-o", target], folder)
 
 
 def describe(result: voxrt.BuildResult) -> str:

@@ -9,6 +9,8 @@ from bpy.props import BoolProperty, EnumProperty, IntProperty, PointerProperty, 
 
 import voxrt
 
+from .sender import SENDERS
+
 if TYPE_CHECKING:
     from voxrt.voxelize.formats.blend.views import Daylight
 
@@ -25,6 +27,12 @@ def _budgets() -> list[tuple[str, str, str]]:
 def _changed(settings: Any, _: Any) -> None:
     """Let viewports know that the scene is built in another way."""
     settings.id_data.update_tag()
+
+
+def _live_changed(settings: Any, _: Any) -> None:
+    """Leave the line of a board to others."""
+    if not settings.live:
+        SENDERS.close()
 
 
 class VoxrtSettings(bpy.types.PropertyGroup):
@@ -66,7 +74,9 @@ class VoxrtSettings(bpy.types.PropertyGroup):
         default="http://127.0.0.1:8080",
         description="A running voxrt serve, or a board: serial:PORT, tcp://HOST:PORT",
     )
-    live: BoolProperty(name="Live", description="Send every change of the scene")  # type: ignore[valid-type]
+    live: BoolProperty(  # type: ignore[valid-type]
+        name="Live", update=_live_changed, description="Send every change of the scene"
+    )
     octants: BoolProperty(name="Octants", description="Draw the cells of the octree in viewports")  # type: ignore[valid-type]
     use_animation: BoolProperty(  # type: ignore[valid-type]
         name="Render from its memory", default=True, description="Render the frames of the animation that was built"

@@ -131,7 +131,7 @@ class FrameClient:
         -------
         dict
             ``number`` of edits of the scene, ``undo`` and ``redo`` steps that there are, ``blocks`` that were written,
-            and ``materials``, the number of entries of the material table.
+            ``words`` of the octree, and ``materials``, the number of entries of the material table.
 
         Raises
         ------
@@ -141,7 +141,7 @@ class FrameClient:
         figures = (await self.request("edit", operation=operation)).get("edit")
         if not isinstance(figures, dict):
             raise _not_understood()
-        return {name: _whole(figures, name) for name in ("number", "undo", "redo", "blocks", "materials")}
+        return {name: _whole(figures, name) for name in ("number", "undo", "redo", "blocks", "words", "materials")}
 
     async def save(self, suffix: str = ".mem") -> dict[str, bytes]:
         """Fetch the scene as it is now: the files of a ``.mem``, ``.blob`` or ``.vox`` by their names.

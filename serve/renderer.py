@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from voxrt.board.edited_scene import with_materials
+from voxrt.board.edited_scene import rom_of, with_materials
 from voxrt.board.errors import DeviceError, FrameDropped, Refused, TooSlow
 from voxrt.board.frame_drop import FrameDrop
 from voxrt.board.scene import Scene
@@ -192,12 +192,19 @@ class Renderer:
         self._newest_request = (client, request)
         self._changed.set()
         self._edits += 1
-        return {**self.edits(client), "blocks": written, "materials": len(world.materials)}
+        return {**self.edits(client), "blocks": written, "words": 1 + 8 * world.figures().blocks}
 
     def edits(self, client: int | None) -> dict[str, int]:
         """Count the edits of the scene, and those that a client can undo and do again."""
         undo, redo = (0, 0) if self.world is None or client is None else self.world.steps_of(client)
-        return {"number": self._edits, "undo": undo, "redo": redo}
+        materials = 0 if self.world is None else len(self.world.materials)
+        return {"number": self._edits, "undo": undo, "redo": redo, "materials": materials}
+
+    async def materials(self) -> list[tuple[str, str]]:
+        """Return the names and the colours of the scene's materials, by id."""
+        world = self.world
+        found = (await self.aside(partial(rom_of, self.scene))).materials if world is None else world.materials
+        return [(one.name, "#{:02x}{:02x}{:02x}".format(*one.colour)) for one in found]
 
     def still_scene(self) -> Scene:
         """Return the scene with its octree as it is now; Refused if it is an animation. It may take seconds."""

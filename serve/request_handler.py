@@ -19,6 +19,7 @@ from voxrt.serve.requests import (
     CastRay,
     ChangeView,
     EditScene,
+    ListMaterials,
     LoadScene,
     ReadCounters,
     ReadRegisters,
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
     from voxrt.board.scene_memory import Progress
     from voxrt.octree import World
     from voxrt.serve.clients import Client
+    from voxrt.serve.renderer import Renderer
     from voxrt.serve.requests import Request
     from voxrt.serve.session import Session
 
@@ -120,17 +122,14 @@ class RequestHandler:
         answer: dict[str, Any] = {}
         match request:
             case CastRay():
-                renderer = session.renderer
-                if renderer.world is None:
-                    cast = partial(_cast_ray, renderer.scene, renderer.view.frame, request)
-                else:
-                    cast = partial(_pick_voxel, renderer.world, request)
-                answer["hit"] = await renderer.aside(cast)
+                answer["hit"] = await session.renderer.aside(_cast_in(session.renderer, request))
             case ChangeView():
                 session.renderer.change_view(request, client.number, number)
                 session.clients.queue_state()
             case EditScene():
                 answer["edit"] = await session.edit(client.number, number, request.operation)
+            case ListMaterials():
+                answer["materials"] = await session.renderer.materials()
             case SaveScene():
                 answer["files"] = await session.save(client.number, number, request.suffix)
             case ReadSaved():
@@ -188,6 +187,13 @@ class RequestHandler:
 
     def _refuse(self, number: int, problem: str) -> None:
         self._client.queue_answer({"type": "refused", "request": number, "problem": shown_line(problem)})
+
+
+def _cast_in(renderer: Renderer, ray: CastRay) -> Callable[[], dict[str, Any] | None]:
+    """Return what finds the first solid voxel on a ray in the scene as it is now."""
+    if renderer.world is not None:
+        return partial(_pick_voxel, renderer.world, ray)
+    return partial(_cast_ray, renderer.scene, renderer.view.frame, ray)
 
 
 def _cast_ray(scene: Scene, frame: int, ray: CastRay) -> dict[str, Any] | None:

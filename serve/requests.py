@@ -141,6 +141,10 @@ class EditScene(Request, frozen=True, tag="edit"):
     operation: EditOperation
 
 
+class ListMaterials(Request, frozen=True, tag="materials"):
+    """Get the names and colours of the scene's materials."""
+
+
 class SaveScene(Request, frozen=True, tag="save"):
     """Make files of the scene that is shown."""
 
@@ -166,6 +170,7 @@ _Any: TypeAlias = (
     | CancelUpload
     | CastRay
     | EditScene
+    | ListMaterials
     | SaveScene
     | ReadSaved
     | ReadRegisters

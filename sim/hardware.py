@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +21,26 @@ if TYPE_CHECKING:
 
 _FRAME_LIMIT = (1 << 12) - 1
 _CACHE_COUNTS = ("words_read", "word_requests", "line_requests", "lines_read")
+
+
+class _LastTracer(threading.local):
+    """The ray tracer that a thread simulated last: to make one takes as long as 50,000 clocks of it."""
+
+    def __init__(self) -> None:
+        self._kept: tuple[str, Any] = "", None
+
+    def take(self, config: str, _rtl: Any) -> Any:  # noqa: ANN401 - of the native module
+        """Return it if it has that configuration, else a new one. It is not the last one any more."""
+        (name, tracer), self._kept = self._kept, ("", None)
+        return tracer if name == config else _rtl.Tracer(config)
+
+    def put_back(self, config: str, tracer: Any) -> None:  # noqa: ANN401
+        """Keep one whose frame is complete. Frames begin with a reset, which leaves words in caches."""
+        if not tracer.cached:
+            self._kept = config, tracer
+
+
+_LAST_TRACER = _LastTracer()
 
 
 def shader_features(config: str) -> frozenset[str]:
@@ -70,7 +91,7 @@ def render_hardware(
     """
     started = time.perf_counter()
     _rtl = _ray_tracer(config)
-    tracer = _rtl.Tracer(config)
+    tracer = _LAST_TRACER.take(config, _rtl)
     if absent := lighting.features - shader_features(config):
         raise SimulatorError(
             f"ray tracer configuration {config!r} is built without {' and '.join(sorted(absent))}; "
@@ -112,6 +133,7 @@ def render_hardware(
         )
     if pixels["errors"]:
         raise SimulatorError(f"the ray tracer reports {', '.join(pixels['errors'])} in its frame of {rom.name}")
+    _LAST_TRACER.put_back(config, tracer)
     return Frame(
         colour=pixels["colour"],
         material=pixels["material"],

@@ -41,9 +41,16 @@ def monkey(location=(0.0, 0.0, 0.0), material=None):
     return bpy.context.object
 
 
+def with_nodes(owner):
+    """A material or a world that has nodes, as all have since Blender 5."""
+    if bpy.app.version < (5, 0, 0):
+        owner.use_nodes = True
+    return owner
+
+
 def paint(name, colour, **inputs):
     """A material of one colour, linear red, green, blue."""
-    material = bpy.data.materials.new(name)
+    material = with_nodes(bpy.data.materials.new(name))
     shader = material.node_tree.nodes["Principled BSDF"]
     shader.inputs["Base Color"].default_value = (*colour, 1.0)
     for key, value in inputs.items():

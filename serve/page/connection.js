@@ -14,7 +14,8 @@ const RETRY = { first: 500, longest: 5000 }; // milliseconds
 
 /** What answers hold, each some of it. @typedef {{ request: number, upload: number, scene: { name: string }, hit: { point:
  * Vector, voxel: Vector, material: number, face: number | null } | null, files: { name: string, size: number }[], part:
- * Uint8Array<ArrayBuffer>, registers: Record<string, number>, counters: Record<string, number> }} Answer */
+ * Uint8Array<ArrayBuffer>, edit: { blocks: number, words: number, undo: number, redo: number, materials: number },
+ * materials: [string, string][], registers: Record<string, number>, counters: Record<string, number> }} Answer */
 
 /** @typedef {{ resolve: (answer: Answer) => void, reject: (error: Error) => void, progress?: ((report: Report) =>
  * void) | null }} Pending a request that waits for its answer */

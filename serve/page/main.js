@@ -16,6 +16,7 @@ const commands = {
   ...views.commands(),
 };
 const pilot = makePilot(app, $("picture"), commands, (x, y) => app.focusAt(x, y));
+app.editing.connect(pilot.gestures, commands);
 
 $("frame").onclick = commands.KeyF;
 $("reset").onclick = commands.KeyR;

@@ -65,11 +65,35 @@ def house():
     return voxrt.build("examples/house.obj", depth=5).rom
 
 
+def search_of(cameras, clock_hz):
+    views = [(view.position, view.look, view.right, view.up) for view in cameras]
+    return _model.BeamSearch(np.array(views, np.int32), clock_hz, BUFFER_LINES)
+
+
+@pytest.mark.parametrize(("megahertz", "expected"), [(20, 2), (75, 1), (400, 0)])
+def test_the_view_that_takes_longest_decides(house, megahertz, expected):
+    """Small pictures of all views find it, and its own picture says how long it takes."""
+    rng = np.random.default_rng(megahertz)
+    cameras = orbit(house, SCREEN, 8)
+    for _ in range(20):
+        cycles = dict(zip([camera.position for camera in cameras], rng.permutation(np.linspace(2, 12, 8)), strict=True))
+        search, pictures = search_of(cameras, megahertz * 1e6), []
+        while not search.ended:
+            bands = [search.band(ahead) for ahead in range(search.left)]
+            pictures.append((bands[0].width, sum(band.rows for band in bands)))
+            for band in bands:
+                search.give(cycles[tuple(band.camera[0].tolist())] * band.width * band.rows)
+        scale, per_pixel, _, _ = search.fit()
+        assert (scale, per_pixel) == (expected, pytest.approx(12))
+        assert pictures[:10] == [(80, 60)] * 8 + [(320, 240)] * 2
+        assert len(pictures) == 10 + (expected != 1)
+        assert search.done == search.total == 11
+
+
 def test_bands_cost_what_the_frame_costs(house):
     (camera,) = orbit(house, (320, 240), 1)
     whole = voxrt.render(house, camera, size=(320, 240), engine="rtl", config="tiny").cost.cycles
-    views = [(view.position, view.look, view.right, view.up) for view in orbit(house, SCREEN, 8)]
-    search = _model.BeamSearch(np.array(views, np.int32), 75e6, BUFFER_LINES)
+    search = search_of(orbit(house, SCREEN, 2), 75e6)
     cycles = []
     for _ in range(BANDS):
         band = search.band()

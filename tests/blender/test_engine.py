@@ -15,6 +15,7 @@ import voxrt  # noqa: E402
 from voxrt.views.viewpoint import authored_camera  # noqa: E402
 from voxrt.voxelize.colour.srgb import srgb_from_linear  # noqa: E402
 
+MATERIAL_PASS = "Material Index" if bpy.app.version >= (5, 0, 0) else "IndexMA"
 pytestmark = pytest.mark.usefixtures("extension")
 
 
@@ -117,7 +118,7 @@ def test_passes_are_exact(tmp_path):
     grid = result.rom.grid
     camera = authored_camera(result.scene.viewpoint, grid, (64, 48))
     frame = voxrt.render(result.rom, camera, size=(64, 48), engine="model")
-    depth, index = passes["Depth"]["Z"], passes["Material Index"]["X"]
+    depth, index = passes["Depth"]["Z"], passes[MATERIAL_PASS]["X"]
     np.testing.assert_array_equal(index, frame.material)
     assert (depth[frame.material == 0] == np.float32(1e10)).all()
     # The depth of each pixel, against the position at which its ray stands then: on a face of a voxel of the material.

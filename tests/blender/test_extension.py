@@ -50,6 +50,8 @@ def test_the_archive_has_what_it_needs(packer, archive, tmp_path):
     with zipfile.ZipFile(archive) as opened:
         names = set(opened.namelist())
         manifest = tomllib.loads(opened.read("blender_manifest.toml").decode())
+    assert tuple(map(int, manifest["blender_version_min"].split("."))) <= bpy.app.version
+    assert bpy.app.version < tuple(map(int, manifest.get("blender_version_max", "9.0.0").split(".")))
     assert {"__init__.py", "blender_manifest.toml", "engine.py", "LICENSE"} <= names
     assert "make_extension.py" not in names
     assert {one.removeprefix("./") for one in manifest["wheels"]} == {one for one in names if one.endswith(".whl")}

@@ -52,7 +52,7 @@ def test_a_camera_and_a_sky_come_through(tmp_path):
     camera = scenes.link("camera", bpy.data.cameras.new("camera"))
     camera.location, camera.data.shift_x = (0, -9, 0), 0.25
     scene = bpy.context.scene
-    scene.camera, scene.world = camera, bpy.data.worlds.new("world")
+    scene.camera, scene.world = camera, scenes.with_nodes(bpy.data.worlds.new("world"))
     scene.render.resolution_x, scene.render.resolution_y = 640, 320
     scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (1, 0, 0, 1)
     found = voxrt.load(saved(tmp_path / "view.blend"))

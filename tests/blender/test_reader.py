@@ -232,7 +232,7 @@ def test_sun_and_sky():
     scenes.cube()
     sun = scenes.link("sun", bpy.data.lights.new("sun", "SUN"))
     sun.rotation_euler = (np.pi / 2, 0, 0)  # it stands in the direction -y of Blender, and shines along y
-    world = bpy.data.worlds.new("world")
+    world = scenes.with_nodes(bpy.data.worlds.new("world"))
     bpy.context.scene.world = world
     background = world.node_tree.nodes["Background"]
     background.inputs["Color"].default_value = (0.25, 0.5, 1.0, 1)

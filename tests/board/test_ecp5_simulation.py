@@ -10,7 +10,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fakes.board_host import Host, SimulatedPort, cameras_around, picture
+from fakes.board_host import Host, cameras_around, picture
+from fakes.simulated_port import SimulatedPort
 from oracles.verilator import needs_compiled_verilator
 
 from voxrt.board.designs import serial_device

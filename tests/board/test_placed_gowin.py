@@ -7,7 +7,7 @@ import pytest
 from fakes.placed_cells import netlist
 from oracles.icarus import needs_icarus, printed_by
 
-from voxrt.board.designs.simulation.placed_gowin import placed_verilog
+from voxrt.board.designs.simulation.placed_gowin import MODELS, placed_verilog
 from voxrt.board.designs.simulation.placed_netlist import UnknownCellError
 
 A, B, ADDS, SUM, CARRY, LOW, HIGH, CLOCK, WRITE = 10, 20, 30, 40, 50, 2, 3, 4, 5  # numbers of the first nets
@@ -90,6 +90,36 @@ def test_a_memory_in_logic_is_written_at_the_clock_and_read_at_once(tmp_path):
     assert [
         int(word) for word in printed_by(tmp_path, bench + "\n".join(lines) + "\nend endmodule\n", placed)
     ] == wanted
+
+
+@needs_icarus
+def test_a_block_ram_of_two_rows_keeps_whole_words(tmp_path):
+    """Port B has the upper row of a single port, with write enables of its own."""
+    rng = np.random.default_rng(3)
+    words = [int(word) for word in rng.integers(0, 1 << 36, 20)]
+    places = [int(place) for place in rng.permutation(512)[:20]]
+    pins = {"CLK": CLOCK, "CE": HIGH, "WRE": WRITE, "CLKB": CLOCK, "CEB": HIGH, "WREB": WRITE, "ADB4": HIGH, "AD4": LOW}
+    for letter in ("AD", "ADB"):
+        pins |= {f"{letter}{bit}": WRITE if bit < 2 else LOW for bit in range(4)}
+        pins |= {f"{letter}{bit}": 95 + bit for bit in range(5, 14)}
+    pins |= {f"DI{bit}": 200 + bit for bit in range(36)} | {f"DO{bit}": 300 + bit for bit in range(36)}
+    ports = {"a": port("input", 100, 9), "d": port("input", 200, 36), "q": port("output", 300, 36)}
+    ports |= {"clk": port("input", CLOCK, 1), "e": port("input", WRITE, 1)}
+    placed = placed_verilog(
+        netlist(ports, constants() | {"ram": cell("SP", pins, BIT_WIDTH=f"{36:032b}", WRITE_MODE=f"{2:032b}")})
+    )
+    lines = [
+        f"a = {place}; d = {word}; e = 1; #1 clk = 1; #1 clk = 0;" for place, word in zip(places, words, strict=True)
+    ]
+    lines += [f'a = {place}; e = 0; #1 clk = 1; #1 clk = 0; #1 $display("%d", q);' for place in places]
+    top = "top t (.a(a), .d(d), .clk(clk), .e(e), .q(q));"
+    bench = f"module bench; reg [8:0] a; reg [35:0] d; reg clk = 0, e; wire [35:0] q; {top} initial begin\n"
+    models = MODELS[1].read_text()
+    found = printed_by(tmp_path, bench + "\n".join(lines) + "\nend endmodule\n", placed + models)
+    assert [int(word) for word in found] == words
+    pins["ADB9"] = LOW
+    with pytest.raises(UnknownCellError, match="two rows at two addresses is not known"):
+        placed_verilog(netlist(ports, constants() | {"ram": cell("SP", pins, BIT_WIDTH=f"{36:032b}")}))
 
 
 @pytest.mark.parametrize(

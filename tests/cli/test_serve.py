@@ -15,8 +15,15 @@ import pytest
 from fakes.blob import blob_of
 from fakes.board_agent import running_agent
 from fakes.device import wide_scene
+from fakes.ecp5_board import Board
 from fakes.pynq import Core, install
+from fakes.serial_line import serial_line
 
+from voxrt import read_any
+from voxrt.board.designs.serial_device import SerialDevice
+from voxrt.board.designs.serial_link import SerialLink
+from voxrt.board.simulated.model import ModelDevice
+from voxrt.octree import Octree, to_dense
 from voxrt.serve.frame_client import open_client
 
 
@@ -145,6 +152,42 @@ def test_upload_to_a_board(voxrt, folder, board, monkeypatch):
     voxrt.fails(4, "wide has 24001 words and board at 127", "upload", "wide.blob", "--to", board)
     monkeypatch.setenv("VOXRT_BOARD_TOKEN", "another")
     voxrt.fails(5, "the token is another one", "upload", "house.mem", "--to", board)
+
+
+def test_the_line_of_a_board_stays_open_for_all_files_of_standard_input(voxrt, folder):
+    pytest.importorskip("voxrt.sim._rtl")
+    assert voxrt("build", "house.obj", "--depth", 4).code == 0
+    for number in (1, 2):
+        script = [{"op": "set", "points": [[number, height, 1]], "materials": 1} for height in range(16)]
+        (folder / "edits.jsonl").write_text("".join(f"{json.dumps(one)}\n" for one in script))
+        voxrt.succeeds("edit", "house.mem", "--script", "edits.jsonl", "-o", f"edited{number}.mem")
+    board = Board()
+    get, put, opened, written = board.get, board.put, [], []
+    board.get = lambda address: (opened.append(address == 0x1000), get(address))[1]
+    board.put = lambda address, value: (written.append(address >= 0x800000), put(address, value))[1]
+    with serial_line(board) as address:
+        command = [sys.executable, "-m", "voxrt", "upload", "-", "--json", "--to", address]
+        pipes = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
+        with subprocess.Popen(command, cwd=folder, text=True, **pipes) as process:
+            taken = []
+            for file in ("house.mem", "edited1.mem", "nothing.mem", "edited2.mem"):
+                written.clear()
+                process.stdin.write(f"{file}\n")
+                process.stdin.flush()
+                if file == "nothing.mem":
+                    assert "nothing.mem: cannot be read" in process.stderr.readline()
+                    continue
+                answer = "".join(iter(process.stdout.readline, "}\n"))
+                assert f'"name": "{file.removesuffix(".mem")}"' in answer
+                taken.append(sum(written))
+            _, errors = process.communicate(timeout=60)
+    assert (process.returncode, errors) == (5, "voxrt: error: 1 of 4 memories were not shown\n")
+    assert sum(opened) == 1
+    first, *edits = taken
+    assert 0 < max(edits) < first / 4
+    shown = SerialDevice(SerialLink("test port", board), ModelDevice()).loaded().scene
+    expected = read_any(folder / "edited2.mem")[0].rom.octree
+    np.testing.assert_array_equal(to_dense(Octree(shown.depth, shown.words)), to_dense(expected))
 
 
 def test_a_server_for_others_wants_a_token(folder):

@@ -68,23 +68,3 @@ class Host:
 
     def register(self, name):
         return self.read(BOARD_REGISTERS[name])[0]
-
-
-class SimulatedPort:
-    """The serial port of the driver, at a simulated board."""
-
-    def __init__(self, board):
-        self.board, self.answer = board, b""
-
-    def write(self, data):
-        self.board.send(data)
-
-    def read(self, count):
-        quiet = 0
-        while len(self.answer) < count and quiet < 60:  # a request takes 86,000 clocks
-            self.board.run(2000)
-            came = self.board.received()
-            quiet = 0 if came else quiet + 1
-            self.answer += came
-        found, self.answer = self.answer[:count], self.answer[count:]
-        return found

@@ -4,10 +4,11 @@ ray tracer verilated. It can lose and damage bytes, and be unplugged."""
 from __future__ import annotations
 
 import zlib
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from voxrt.board.register_writes import encode_fields
 from voxrt.board.registers import MATERIALS, REGISTERS
 from voxrt.sim.verilated import import_verilated
 
@@ -23,12 +24,36 @@ PAGE = 1 << 21
 CONFIGURATION, FIELDS = REGISTERS["configuration"]
 
 
+class BlindCore:
+    """The registers and the memory of a ray tracer that traces nothing, where none is verilated."""
+
+    def __init__(self) -> None:
+        self.registers = {
+            REGISTERS["identity"][0]: 0x56585254,
+            CONFIGURATION: encode_fields("configuration", lanes=1, max_depth=16, ray_clocks=1, position_bits=22),
+            REGISTERS["features"][0]: encode_fields("features", flat=1, faces=1),
+        }
+        self.memory = np.zeros(1 + (8 << BLOCK_BITS), np.uint32)
+
+    def read(self, address: int) -> int:
+        return self.registers.get(address, 0)
+
+    def write(self, address: int, value: int) -> None:
+        self.registers[address] = value
+
+    def read_memory(self, word: int, count: int) -> np.ndarray:
+        return self.memory[word : word + count]
+
+    def write_memory(self, word: int, words: np.ndarray) -> None:
+        self.memory[word : word + len(words)] = words
+
+
 class Board:
     """A serial port (`write`, `read`, `close`) with a board at it. Each request lets one vertical blanking pass."""
 
-    def __init__(self, faults: Iterable[str] = (), *, sdram: bool = False) -> None:
+    def __init__(self, faults: Iterable[str] = (), *, sdram: bool = False, core: Any = None) -> None:
         self.sdram = sdram
-        self.core = import_verilated("the tests need it").Core("tiny")
+        self.core = core or import_verilated("the tests need it").Core("tiny")
         self.words = 1 + (8 << (SDRAM_BLOCK_BITS if sdram else BLOCK_BITS))
         self.table = np.zeros(4096, dtype=np.uint32)
         self.registers = dict.fromkeys(range(0x1000, 0x1030, 4), 0)

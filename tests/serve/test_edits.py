@@ -71,7 +71,10 @@ async def test_every_frame_shows_the_edit_before_it():
                 assert (await picture_after(one, client._requests) == expected).all()
         while client.state["scene"]["edits"]["number"] < len(edits):
             await client.request("counters")
-        assert client.state["scene"]["edits"] == {"number": 6, "undo": 4, "redo": 0}
+        assert client.state["scene"]["edits"] == {"number": 6, "undo": 4, "redo": 0, "materials": 5}
+        assert (await client.request("materials"))["materials"][1:] == [
+            [one.name, "#{:02x}{:02x}{:02x}".format(*one.colour)] for one in server.session.renderer.world.materials[1:]
+        ]
 
 
 class History:
@@ -135,7 +138,8 @@ async def test_two_viewers_undo_their_own_edits():
                 undone += 1
             counts = [len(history.numbers(author, undone=state)) for state in (False, True)]
             assert [figures["undo"], figures["redo"]] == counts
-            assert server.session.state()["scene"]["edits"] == {key: figures[key] for key in ("number", "undo", "redo")}
+            known = {key: figures[key] for key in ("number", "undo", "redo", "materials")}
+            assert server.session.state()["scene"]["edits"] == known
             np.testing.assert_array_equal(to_dense(renderer.world.rom().octree), history.cube())
         assert undone > 30
         view = view_of(scene, (48, 32))

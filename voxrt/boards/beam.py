@@ -7,6 +7,8 @@ A board without a frame buffer traces each line before the screen needs it. A li
 from __future__ import annotations
 
 import math
+import os
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -73,21 +75,25 @@ def fit_beam(
     """Find the largest pictures that a board traces in time, from all around a scene.
 
     The cycles are counted by the verilated ray tracer with the board's number of lanes, in eight views of the orbit
-    `cameras`, which is for pictures of 640 x 480 pixels. `progress` receives how many are complete, of how many. It
-    raises SimulatorError if that ray tracer is missing, has no such lanes, or cannot hold the scene.
+    `cameras`, which is for pictures of 640 x 480 pixels: in small pictures of all, and in full ones of the two that
+    take longest. `progress` receives how many pictures are complete, of how many. It raises SimulatorError if that ray
+    tracer is missing, has no such lanes, or cannot hold the scene.
     """
     config = configuration_of(tracer.lanes, tracer.ray_clocks, lighting)
     registers = np.array([registers_of(camera) for camera in cameras])
     search = _model.BeamSearch(registers, tracer.clock_hz, tracer.buffer_lines)
-    progress(0, search.total)
-    while not search.ended:
-        done, band = search.done, search.band()
+
+    def count(band: _model.Band) -> int:
         camera = Camera(*(tuple(triple) for triple in band.camera.tolist()))
         size = band.width, band.rows
-        frame = sim.render(rom, camera, size, engine="rtl", config=config, lighting=lighting)
-        search.give(frame.cost.cycles or 0)
-        if search.done > done:
+        return sim.render(rom, camera, size, engine="rtl", config=config, lighting=lighting).cost.cycles or 0
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        while not search.ended:
             progress(search.done, search.total)
+            for cycles in pool.map(count, [search.band(ahead) for ahead in range(search.left)]):
+                search.give(cycles)
+    progress(search.done, search.total)
     return BeamFit(*search.fit())
 
 

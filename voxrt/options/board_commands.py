@@ -51,7 +51,8 @@ class UploadCommand:
     """What ``voxrt upload`` takes."""
 
     rom: Path = option(file("ROM"), MISSING, ARGUMENTS,
-        "A blob, or a .mem file; its manifest, the .json in the same folder, is sent with it.")
+        "A blob, or a .mem file; its manifest, the .json in the same folder, is sent with it. Or -: a file per line of "
+        "standard input, each shown as its line comes; the line of a board stays open until the end.")
     to: str | None = option(text("URL"), None, _DEVICE,
         "The address of the page, with its token, as the frame server printed it. Or the serial line of a board, "
         "such as serial:/dev/ttyUSB0, or a PYNQ board that runs voxrt-board, such as tcp://pynq:4810, with its "

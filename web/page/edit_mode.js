@@ -7,8 +7,8 @@ import { Editor } from "./editor.js";
 import { $, isPressed, pressed } from "./elements.js";
 import { pixelDirection } from "./camera.js";
 import { notice } from "./notices.js";
-/** @import { App } from "./app.js" @import { Choice } from "./edit_bar.js" @import { Tool } from "./edit_worker.js" */
-/** @import { Place } from "./edit_pointer.js" @import { Gestures } from "./gestures.js" */
+/** @import { App } from "./app.js" @import { Choice } from "./edit_bar.js" @import { Place, Tool } from "./edit_pointer.js" */
+/** @import { Gestures } from "./gestures.js" */
 /** @import { Commands } from "./tools.js" @import { Walker } from "./walker.js" */
 
 const NARROW = matchMedia("(max-width: 45rem), (max-height: 30rem)"); // the panel would leave little of the picture

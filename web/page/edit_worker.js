@@ -8,7 +8,7 @@ import { answerWith } from "./worker_answers.js";
 /** @import { Box } from "./camera.js" @import { Vector } from "./vectors.js" */
 /** @import { Material } from "./voxrt/voxrt.js" @import { Patch, Picked } from "./voxrt/world.js" */
 
-/** @typedef {"dig" | "build" | "paint"} Tool */
+/** @import { Tool } from "./edit_pointer.js" */
 /** `size`: voxels across; `keepOut`: where nothing is built, the box of who walks. @typedef {{ tool: Tool, size: number,
  * material: number, keepOut: Box | null, stroke: number, origin: Vector, direction: Vector }} Stroke */
 

@@ -11,8 +11,7 @@ const LONG = 0.12; // seconds: a picture that takes longer begins coarsely
 const REST = 500; // milliseconds after the last edit until the memory is made of it
 const FIGURES = 200; // milliseconds between figures
 
-/** `fresh`: blocks that the newest edits have made, or brought back; `freed`: blocks that voxels no longer need.
- * @typedef {Awaited<ReturnType<EditCalls["figures"]>> & { fresh: number, freed: number }} EditFigures */
+/** @import { EditFigures } from "./edit_bar.js" */
 
 export class Editor {
   /** @type {Hand<EditCalls>} */ #hand = new Hand("./edit_worker.js");

@@ -195,6 +195,8 @@ class _Writer:
             write = ("1'b1" if port == "A" else "1'b0") if writes is None else self.value(cell, writes)
             enable = self.value(cell, f"CE{suffix}")
             address = self.bus(cell, f"AD{suffix}", 14)
+            if kind == "SP" and int(parameters[width], 2) in (32, 36):
+                address = self._wide_address(name, cell)
             data = self.bus(cell, "DI" if kind != "DP" else f"DI{suffix}", 36 if kind != "DP" else 18)
             pins += [f".CLK{port}({self.value(cell, f'CLK{suffix}')})", f".CE{port}({enable})", f".WRE{port}({write})"]
             pins += [f".AD{port}({address})", f".DI{port}({data})"]
@@ -204,6 +206,14 @@ class _Writer:
             for i in range(36 if reads else 0):
                 self.drive(cell, f"DO{i}" if kind != "DP" else f"DO{suffix}{i}", f"o{port.lower()}{number}[{i}]")
         self._lines.append(f"  placed_gowin_ram #({', '.join(settings)}) b{number} ({', '.join(pins)});")
+
+    def _wide_address(self, name: str, cell: Mapping[str, Any]) -> str:
+        """Give the address of a single port of two rows: port B has the upper one, with enables of its own."""
+        connections = cell["connections"]
+        if any(connections[f"AD{index}"] != connections[f"ADB{index}"] for index in range(5, 14)):
+            raise UnknownCellError(f"{name}: a block RAM of two rows at two addresses is not known")
+        pins = [f"AD{index}" for index in reversed(range(4, 14))] + ["ADB1", "ADB0", "AD1", "AD0"]
+        return "{" + ", ".join(self.value(cell, pin) for pin in pins) + "}"
 
     def _constant(self, cell: Mapping[str, Any], pin: str) -> int | None:
         """Give what a pin always is; None if that changes."""

@@ -113,7 +113,7 @@ void exercise_boards(Random& random, unsigned depth) {
     int bands = 0;
     for (; !search.ended(); ++bands) {
         const sim::BeamSearch::Band band = search.band();
-        check(bands < 9 * 12 && band.rows * 12 == band.width * 3 / 4, "a search goes on and on");
+        check(bands < 11 * 12 && band.rows * 12 == band.width * 3 / 4, "a search goes on and on");
         search.give(band.width * band.rows * (1 + upto(random, 20)));
     }
     check(search.done() == search.total() && search.fit().scale <= 2, "a search has no end");

@@ -10,7 +10,7 @@ using namespace voxrt::voxelize;
 namespace {
 
 bool intervals_agree(std::mt19937& random) {
-    alignas(32) int32_t lo[8], hi[8];
+    alignas(32) int32_t lo[8], hi[8], marks[8];
     const int base = 8 * static_cast<int>(random() % 8192);
     for (int i = 0; i < 8; ++i) {
         lo[i] = std::max(0, base - 12 + static_cast<int>(random() % 60));
@@ -19,17 +19,18 @@ bool intervals_agree(std::mt19937& random) {
             lo[i] = 1 << 30;
             hi[i] = lo[i] - 1;
         }
+        marks[i] = random() % 5 == 0 ? 1 << 30 : base - 12 + static_cast<int>(random() % 60);
     }
-    const IntervalBytes bytes(lo, hi, base);
+    const IntervalBytes bytes(lo, hi, marks, base);
     for (int brick = 0; brick < IntervalBytes::kBricks; ++brick) {
-        ColumnBytes inside = 0, begins = 0;
+        ColumnBytes inside = 0, marked = 0;
         for (int i = 0; i < 8; ++i)
             for (int bit = 0; bit < 8; ++bit) {
                 const int z = base + 8 * brick + bit;
                 inside |= ColumnBytes{lo[i] <= z && z <= hi[i]} << (8 * i + bit);
-                begins |= ColumnBytes{lo[i] == z} << (8 * i + bit);
+                marked |= ColumnBytes{marks[i] == z} << (8 * i + bit);
             }
-        if (bytes.inside[brick] != inside || bytes.begins[brick] != begins)
+        if (bytes.inside[brick] != inside || bytes.marked[brick] != marked)
             return false;
     }
     return true;

@@ -188,25 +188,12 @@ nb::object voxelize_parts(const SceneParts& scene, const std::string& thin, int 
 nb::object volumes_of_parts(const SceneParts& scene, int threads, const std::string& instructions) {
     require_threads(threads);
     ObjectVolumes found;
-    LargeVector<uint32_t> owners;
-    LargeVector<std::array<int32_t, 3>> places;
-    LargeVector<double> volumes;
     {
         const LongCall call;
         found = find_volumes(scene.depth, scene.parts, scene.objects, threads, instructions);
-        owners.reserve(found.voxels.size());
-        places.reserve(found.voxels.size());
-        volumes.reserve(found.voxels.size());
-        for (const VoxelVolume& voxel : found.voxels) {
-            owners.push_back(voxel.object);
-            places.push_back({int32_t(gather_bits(voxel.code)), int32_t(gather_bits(voxel.code >> 1)),
-                              int32_t(gather_bits(voxel.code >> 2))});
-            volumes.push_back(voxel.volume);
-        }
     }
-    LargeVector<int64_t> whole(found.whole.begin(), found.whole.end());
-    LargeVector<uint8_t> known(found.known.begin(), found.known.end());
-    return voxel_volumes(take(owners), take(places), take(volumes), take(whole), take(known));
+    return voxel_volumes(take(found.objects), take(found.voxels), take(found.volumes), take(found.whole),
+                         take(found.known));
 }
 
 /// A BlockVoxelizer. The parts must outlive it.

@@ -62,8 +62,9 @@ private:
     const Wide *p_, *q_;
 };
 
-template <typename Wide, bool Cross, class Receiver>
-void find_centres(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w, Receiver& receiver) {
+template <typename Wide, class Receiver>
+void find_centres(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w, bool crosses, bool holds,
+                  Receiver& receiver) {
     const LocalTriangle<Wide> t(a, b, c);
     Wide x[3], y[3], z[3];
     for (int i = 0; i < 3; ++i) {
@@ -83,9 +84,9 @@ void find_centres(const Vertex& a, const Vertex& b, const Vertex& c, const Windo
                 const Wide height = sign * (nx * (x[0] - u * static_cast<Wide>(kUnit)) +
                                             ny * (y[0] - v * static_cast<Wide>(kUnit)) + nz * z[0]);
                 const Wide below = floor_div<Wide>(height, unit);
-                if (below * unit == height && below >= z_first && below <= z_last)
+                if (holds && below * unit == height && below >= z_first && below <= z_last)
                     receiver.hold(u + t.bx, v + t.by, static_cast<int>(below) + t.bz, static_cast<int>(below) + t.bz);
-                if (Cross && u >= row.from && u <= row.to && below < z_last)
+                if (crosses && u >= row.from && u <= row.to && below < z_last)
                     receiver.cross(u + t.bx, v + t.by, static_cast<int>(std::max<Wide>(below + 1, z_first)) + t.bz,
                                    nz < 0);
             }
@@ -95,7 +96,7 @@ void find_centres(const Vertex& a, const Vertex& b, const Vertex& c, const Windo
     // The triangle stands upright: seen along x or y.
     const bool along_x = nx != 0;
     const Wide normal = along_x ? nx : ny, other = along_x ? ny : nx;
-    if (normal == 0)
+    if (normal == 0 || !holds)
         return; // a segment or a point: on the surface are its neighbours
     const Wide *across = along_x ? y : x, *along = along_x ? x : y;
     const int across_base = along_x ? t.by : t.bx, along_base = along_x ? t.bx : t.by;
@@ -124,16 +125,18 @@ void find_centres(const Vertex& a, const Vertex& b, const Vertex& c, const Windo
 ///
 /// receiver.hold(x, y, lo, hi): the centres of voxels lo … hi of column (x, y) lie on the closed triangle.
 /// receiver.cross(x, y, z, enters): the line through the centres of column (x, y) crosses the surface below the centre
-/// of voxel z, the lowest such; `enters` when it goes upwards against the normal. Only where Cross.
-template <bool Cross, class Receiver>
-void find_centres(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w, Receiver& receiver) {
+/// of voxel z, the lowest such; `enters` when it goes upwards against the normal.
+/// `crosses`, `holds`: which of them are wanted.
+template <class Receiver>
+void find_centres(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w, bool crosses, bool holds,
+                  Receiver& receiver) {
     const int64_t extent = std::max({int64_t{std::max({a.x, b.x, c.x})} - std::min({a.x, b.x, c.x}),
                                      int64_t{std::max({a.y, b.y, c.y})} - std::min({a.y, b.y, c.y}),
                                      int64_t{std::max({a.z, b.z, c.z})} - std::min({a.z, b.z, c.z})});
     if (extent < kNarrowExtent)
-        coverage::find_centres<int64_t, Cross>(a, b, c, w, receiver);
+        coverage::find_centres<int64_t>(a, b, c, w, crosses, holds, receiver);
     else
-        coverage::find_centres<int128, Cross>(a, b, c, w, receiver);
+        coverage::find_centres<int128>(a, b, c, w, crosses, holds, receiver);
 }
 
 } // namespace voxrt::voxelize

@@ -77,51 +77,53 @@ inline ColumnBytes bytes_of(FourInts low, FourInts high, int shift) {
 
 } // namespace coverage
 
-/// Eight intervals, brick by brick from voxel `base` on: the voxels inside, and those that an interval begins with.
+/// Eight intervals and eight marks, brick by brick from voxel `base` on: the voxels inside, and those with a mark.
 struct IntervalBytes {
 #if defined(__AVX2__)
     static constexpr int kBricks = 4;
 #else
     static constexpr int kBricks = 3;
 #endif
-    ColumnBytes inside[kBricks], begins[kBricks];
+    ColumnBytes inside[kBricks], marked[kBricks];
 
-    /// `lo` and `hi` stand at multiples of 32 bytes. An interval with hi < lo is empty, but may begin somewhere.
-    [[gnu::always_inline]] IntervalBytes(const int32_t* lo, const int32_t* hi, int base) {
+    /// `lo`, `hi` and `marks` stand at multiples of 32 bytes. An interval with hi < lo is empty.
+    [[gnu::always_inline]] IntervalBytes(const int32_t* lo, const int32_t* hi, const int32_t* marks, int base) {
 #if defined(__AVX2__)
         // Shifted by 32 and more, a one is lost. Shifts are without sign.
         const __m256i bases = _mm256_set1_epi32(base), none = _mm256_setzero_si256(), ones = _mm256_set1_epi32(1);
-        const __m256i from = _mm256_sub_epi32(_mm256_load_si256(reinterpret_cast<const __m256i*>(lo)), bases);
-        const __m256i last = _mm256_sub_epi32(_mm256_load_si256(reinterpret_cast<const __m256i*>(hi)), bases);
-        const __m256i first = _mm256_max_epi32(from, none);
+        const auto from_base = [&](const int32_t* voxels) {
+            return _mm256_sub_epi32(_mm256_load_si256(reinterpret_cast<const __m256i*>(voxels)), bases);
+        };
+        const __m256i first = _mm256_max_epi32(from_base(lo), none), last = from_base(hi);
         const __m256i end = _mm256_max_epi32(_mm256_sub_epi32(last, _mm256_set1_epi32(-1)), first);
         store(inside, _mm256_sub_epi32(_mm256_sllv_epi32(ones, end), _mm256_sllv_epi32(ones, first)));
-        store(begins, _mm256_sllv_epi32(ones, from));
+        store(marked, _mm256_sllv_epi32(ones, from_base(marks)));
 #elif defined(VOXRT_FOUR_NUMBERS)
         using namespace coverage;
         // 2^x of whole numbers: x is the exponent of a float32.
         auto power_of_two = [](FourFloats x) { return from_bits(whole(scaled(x, 127, 1 << 23))); };
         constexpr float height = 8 * kBricks;
-        FourInts within[2], first[2];
+        FourInts within[2], marks_within[2];
         for (int half = 0; half < 2; ++half) {
-            const FourFloats from = less(load_four(lo + 4 * half), base);
+            const FourFloats from = less(load_four(lo + 4 * half), base),
+                             mark = less(load_four(marks + 4 * half), base);
             const FourFloats end = less(load_four(hi + 4 * half), base - 1);
             const FourFloats lowest = power_of_two(clamped(from, 0, height));
             within[half] = whole(clamped(difference(power_of_two(clamped(end, 0, height)), lowest), 0, 1 << 24));
-            first[half] = whole(where(from, 0, height, lowest));
+            marks_within[half] = whole(where(mark, 0, height, power_of_two(clamped(mark, 0, height))));
         }
         for (int i = 0; i < kBricks; ++i) {
             inside[i] = bytes_of(within[0], within[1], 8 * i);
-            begins[i] = bytes_of(first[0], first[1], 8 * i);
+            marked[i] = bytes_of(marks_within[0], marks_within[1], 8 * i);
         }
 #else
         for (int brick = 0; brick < kBricks; ++brick, base += 8) {
-            inside[brick] = begins[brick] = 0;
+            inside[brick] = marked[brick] = 0;
             for (int i = 0; i < 8; ++i) {
                 const int from = std::clamp(lo[i] - base, 0, 8), end = std::clamp(hi[i] - base + 1, from, 8);
                 inside[brick] |= static_cast<ColumnBytes>((1u << end) - (1u << from)) << 8 * i;
-                if (lo[i] >= base && lo[i] < base + 8)
-                    begins[brick] |= ColumnBytes{1} << (8 * i + from);
+                if (marks[i] >= base && marks[i] < base + 8)
+                    marked[brick] |= ColumnBytes{1} << (8 * i + marks[i] - base);
             }
         }
 #endif

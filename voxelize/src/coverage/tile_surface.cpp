@@ -9,10 +9,29 @@ void TileSurface::add_row_slowly(int column, int k, int row, ColumnBytes covered
         add_crossings(brick, row, crossed, enters);
 }
 
-void TileSurface::add_pieces(const ColumnPieces& columns, int count, int n) {
-    for (int i = 0; i < count; ++i)
-        if (n < columns.voxels[i])
-            add_piece(x_ + columns.x[i], y_ + columns.y[i], columns.z[i] + n, columns.areas[i], columns.volumes[i]);
+void TileSurface::cross_row(int group, int y, int k, ColumnBytes crossed, bool enters) {
+    add_crossings(at((y >> kBrickBits) * kTileBricks + group, k), y & (kBrickSide - 1), crossed, enters);
+}
+
+void TileSurface::hold_in_tile(int x, int y, int z) {
+    const int column = (y >> kBrickBits) * kTileBricks + (x >> kBrickBits);
+    row_of(at(column, z >> kBrickBits).held)[z & (kBrickSide - 1)] |= uint64_t{1} << column_bit(x, y);
+}
+
+void TileSurface::add_pieces(const ColumnPieces& columns, int count, int from, int to) {
+    for (int i = 0; i < count; ++i) {
+        const int x = columns.x[i], y = columns.y[i], end = columns.z[i] + std::min(to, columns.voxels[i]);
+        const int column = (y >> kBrickBits) * kTileBricks + (x >> kBrickBits), bit = column_bit(x, y);
+        for (int z = columns.z[i] + from, level = 0; z < end;) {
+            const int slice = z & (kBrickSide - 1), count_here = std::min(end - z, kBrickSide - slice);
+            double* at = pieces_at(column, z >> kBrickBits).slices(slice, slice + count_here) + bit;
+            for (z += count_here; level < z - columns.z[i] - from; ++level, at += 64) {
+                const double volume = columns.volumes[level][i];
+                at[0] += volume;
+                at[64] += columns.areas[level][i] - volume;
+            }
+        }
+    }
 }
 
 } // namespace voxrt::voxelize

@@ -38,7 +38,25 @@ struct ShellBrick {
 
 /// What the triangles of a brick add to the volume of a voxel and of all above, by slice and bit; the last slice is the
 /// lowest of the brick above.
-using VolumePieces = std::array<double, kBrickVoxels + 64>;
+class VolumePieces {
+public:
+    VolumePieces() : begun_(0) {} // no memory is written of slices without pieces
+
+    /// Slices from … to, to be added to.
+    double* slices(int from, int to) {
+        for (uint32_t fresh = ((2u << to) - (1u << from)) & ~begun_; fresh != 0; fresh &= fresh - 1) {
+            std::fill_n(&values_[size_t(64 * std::countr_zero(fresh))], 64, 0.0);
+            begun_ |= fresh & (~fresh + 1);
+        }
+        return &values_[size_t(64 * from)];
+    }
+    /// Null where nothing is added.
+    const double* slice(int z) const { return begun_ >> z & 1 ? &values_[size_t(64 * z)] : nullptr; }
+
+private:
+    uint32_t begun_; // slices, by bit
+    std::array<double, kBrickVoxels + 64> values_;
+};
 
 /// A crossing whose bit is already set.
 struct RepeatedCrossing {
@@ -47,11 +65,11 @@ struct RepeatedCrossing {
     bool enters;
 };
 
-/// What a triangle adds to volumes in up to eight columns of a tile, in voxel z + n of each.
+/// What a triangle adds to volumes in up to eight columns of a tile, from voxel z on.
 struct ColumnPieces {
-    int32_t x[8], y[8], z[8]; // x, y: from the tile's lowest column
-    int32_t voxels[8];        // nothing is added where n is not below
-    alignas(64) double areas[8], volumes[8];
+    static constexpr int kLevels = 8;
+    int32_t x[8], y[8], z[8], voxels[8];                       // x, y: from the tile's lowest column
+    alignas(64) double areas[kLevels][8], volumes[kLevels][8]; // of voxel z + n: at n % kLevels
 };
 
 class TileSurface {
@@ -116,6 +134,9 @@ public:
         }
     }
 
+    /// A triangle crosses columns of a row at voxels that it does not cover.
+    void cross_row(int group, int y, int k, ColumnBytes crossed, bool enters);
+
     /// A voxel has fully transparent surface: that alone makes it no shell, and keeps it out of the inside.
     void cover_transparent(int x, int y, int z) {
         const Position at_column = locate(x, y);
@@ -125,11 +146,11 @@ public:
 
     /// Receives from find_centres that the centres of voxels lo … hi of column (x, y) lie on the surface.
     void hold(int x, int y, int lo, int hi) {
-        const Position at_column = locate(x, y);
         for (int z = lo; z <= hi; ++z)
-            row_of(at(at_column.column, z >> kBrickBits).held)[z & (kBrickSide - 1)] |= uint64_t{1}
-                                                                                        << column_bit(x - x_, y - y_);
+            hold_in_tile(x - x_, y - y_, z);
     }
+    /// The same for a voxel; x and y from the tile's lowest column.
+    void hold_in_tile(int x, int y, int z);
 
     /// Receives from cover_triangle that the ray of column (x, y) crosses the surface at voxel z.
     void cross(int x, int y, int z, bool enters) {
@@ -140,19 +161,14 @@ public:
 
     /// Receives from add_pieces what a triangle adds to the volume of voxel z, and to each above.
     void add_piece(int x, int y, int z, double area, double volume) {
-        ShellBrick& brick = at(locate(x, y).column, z >> kBrickBits);
-        if (brick.pieces == kNone) {
-            brick.pieces = uint32_t(pieces_.size());
-            pieces_.emplace_back().fill(0);
-        }
-        VolumePieces& pieces = pieces_[brick.pieces];
-        const auto place = size_t((z & (kBrickSide - 1)) * 64 + column_bit(x - x_, y - y_));
-        pieces[place] += volume;
-        pieces[place + 64] += area - volume;
+        const int slice = z & (kBrickSide - 1), bit = column_bit(x - x_, y - y_);
+        double* const slices = pieces_at(locate(x, y).column, z >> kBrickBits).slices(slice, slice + 1);
+        slices[bit] += volume;
+        slices[bit + 64] += area - volume;
     }
 
-    /// The same for the first `count` columns. In a file of its own, as add_row_slowly.
-    void add_pieces(const ColumnPieces& columns, int count, int n);
+    /// The same for voxels z + from … z + to - 1 of the first `count` columns. In a file of its own, as add_row_slowly.
+    void add_pieces(const ColumnPieces& columns, int count, int from, int to);
 
     /// Brick `k` (along z) of a brick column, or null.
     ShellBrick* find(int column, int k) {
@@ -211,6 +227,16 @@ public:
     Slices mixed(const ShellBrick& brick) const { return brick.mixed == kNone ? Slices{} : rows_[brick.mixed]; }
 
 private:
+    /// The pieces of a brick, made where there is none.
+    VolumePieces& pieces_at(int column, int k) {
+        ShellBrick& brick = at(column, k);
+        if (brick.pieces == kNone) {
+            brick.pieces = uint32_t(pieces_.size());
+            pieces_.emplace_back();
+        }
+        return pieces_[brick.pieces];
+    }
+
     Slices& row_of(uint32_t& row) {
         if (row == kNone) {
             row = uint32_t(rows_.size());

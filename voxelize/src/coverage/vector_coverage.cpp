@@ -45,15 +45,14 @@ bool fits_vectors(const Vertex& a, const Vertex& b, const Vertex& c) {
            (extent < kNarrowExtent || is_flat_enough(a, b, c));
 }
 
-bool fits_pieces(const Vertex& a, const Vertex& b, const Vertex& c, int top) {
-    constexpr double kSteep = 128 * kUnit;
+bool fits_pieces(const Vertex& a, const Vertex& b, const Vertex& c, int top, double limit) {
     const auto [low_x, high_x] = std::minmax({a.x, b.x, c.x});
     const auto [low_y, high_y] = std::minmax({a.y, b.y, c.y});
     const auto [low_z, high_z] = std::minmax({a.z, b.z, c.z});
     const double extent = std::max({double(high_x) - low_x, double(high_y) - low_y, double(high_z) - low_z});
     const Normal n(a, b, c);
-    return high_z <= (top + 1) * kUnit &&
-           std::abs(n.z) * kSteep > (std::abs(n.x) + std::abs(n.y) + std::abs(n.z)) * extent;
+    return high_z <= (top + 1) * kUnit && extent < kNarrowExtent &&
+           std::abs(n.z) * limit * kUnit > (std::abs(n.x) + std::abs(n.y) + std::abs(n.z)) * extent;
 }
 
 const std::vector<CoverageEngine>& coverage_engines() {

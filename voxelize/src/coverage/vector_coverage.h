@@ -12,12 +12,22 @@ namespace voxrt::voxelize {
 bool fits_vectors(const Vertex& a, const Vertex& b, const Vertex& c);
 
 /// Whether they find the pieces of triangle abc (volume_pieces.h), too: it fits vectors, is no higher than voxel `top`,
-/// and not upright, and its extent in voxels is below 128, or 128 by its slope.
-bool fits_pieces(const Vertex& a, const Vertex& b, const Vertex& c, int top);
+/// and not upright, and its extent in voxels, times its slope or 1, is below `limit`: kFineLimit for errors below
+/// 2^-42, kHalfLimit for errors below 2^-34.
+bool fits_pieces(const Vertex& a, const Vertex& b, const Vertex& c, int top, double limit);
+inline constexpr double kFineLimit = 0x1p7, kHalfLimit = 0x1p15;
 
-/// What is wanted beside the voxels that a triangle covers: which columns it crosses, its pieces.
+/// Whether triangle abc is a segment or a point, seen along z.
+inline bool is_upright(const Vertex& a, const Vertex& b, const Vertex& c) {
+    return (int64_t{b.x} - a.x) * (int64_t{c.y} - a.y) == (int64_t{b.y} - a.y) * (int64_t{c.x} - a.x);
+}
+
+/// What is wanted beside the voxels that a triangle covers.
 struct Wanted {
-    bool crosses = false, pieces = false;
+    bool crosses = false; // which columns it crosses
+    bool centres = false; // at their centres (centre_crossings.h). Not of upright triangles
+    bool holds = false;   // which centres lie on it, with `centres`
+    bool pieces = false;  // its pieces
 };
 
 /// Adds to a surface what triangle abc covers of the surface's tile, and what else is wanted. `window`: the tile's.

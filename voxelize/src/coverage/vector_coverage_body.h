@@ -18,7 +18,8 @@
 namespace voxrt::voxelize {
 namespace {
 
-constexpr double kSample = (kUnit + 1) / 2.0; // of a column's ray in its voxel
+// Where the rays of columns are in their voxels.
+constexpr double kSample = (kUnit + 1) / 2.0, kCentre = kUnit / 2.0;
 
 // An edge, upwards along one axis.
 struct Edge {
@@ -37,7 +38,7 @@ struct Edge {
         reciprocal = 1 / (run * kVoxel); // infinite where it passes no plane
     }
 
-    // From its begin to planes or lines; not a number where it does not pass them.
+    // From its begin to planes or lines; not a number where it passes none of them.
     Lanes to_planes(const Lanes& planes) const {
         const Lanes none = all(__builtin_nan(""));
         return if_less(all(begin), planes, if_less(planes, all(end), planes - all(begin), none), none);
@@ -60,8 +61,11 @@ public:
     // one.
     Lanes upper(const Lanes& along) const { return at(along, 0.5); }
     Lanes lower(const Lanes& along) const { return at(along, -0.5); }
-    // The first column whose ray lies beyond the point.
-    Lanes first_ray_beyond(const Lanes& along) const { return at(along, 0.25 + (kVoxel - kSample) * run_); }
+    // The first column whose ray lies beyond the point; a ray at the centre lies beside it, so that one through the
+    // point is beyond. `along`: 1/4 further.
+    Lanes first_ray_beyond(const Lanes& along, double ray) const {
+        return at(along, (kVoxel - ray) * run_ - rise_ / 4 + (ray == kCentre ? -0.5 : 0.25));
+    }
 
 private:
     Lanes at(const Lanes& along, double offset) const {
@@ -105,12 +109,12 @@ struct Rows {
     alignas(32) int32_t from[kTileSide + kLanes], to[kTileSide + kLanes]; // columns
     alignas(32) int32_t crossed_from[kTileSide + kLanes], crossed_to[kTileSide + kLanes];
 
-    // Rows y0 ... y0 + count - 1, columns x0 ... x1; voxels up to `top`.
-    Rows(const Corners& t, int y0, int count, int x0, int x1, double top, bool crosses) {
+    // Rows y0 ... y0 + count - 1, columns x0 ... x1; voxels up to `top`. `ray`: kSample or kCentre.
+    Rows(const Corners& t, int y0, int count, int x0, int x1, double top, bool crosses, double ray) {
         const Edge edges[3] = {{t.y, 0}, {t.y, 1}, {t.y, 2}};
         Extents x, ends;
         for (int base = 0; base <= count; base += kLanes) {
-            const Lanes planes = ramp((y0 + base) * kVoxel, kVoxel), rays = planes + all(kSample);
+            const Lanes planes = ramp((y0 + base) * kVoxel, kVoxel), rays = planes + all(ray + 0.25);
             EightExtents eight_x, eight_z, eight_ends;
             for (const Edge& edge : edges) {
                 const Lanes along = edge.to_planes(planes);
@@ -118,7 +122,7 @@ struct Rows {
                 eight_x.extend(across.upper(along), across.lower(along));
                 eight_z.extend(upwards.upper(along), upwards.lower(along));
                 if (crosses) {
-                    const Lanes beyond = across.first_ray_beyond(edge.to_planes(rays));
+                    const Lanes beyond = across.first_ray_beyond(edge.to_planes(rays), ray);
                     eight_ends.extend(beyond, beyond);
                 }
             }
@@ -182,16 +186,28 @@ constexpr auto kWholeBytes = [] {
     return bytes;
 }();
 
+// Whether a point is in the closed triangle, seen along z.
+inline bool is_over(const Corners& t, double x, double y) {
+    bool left = false, right = false;
+    for (int a = 0; a < 3; ++a) {
+        const int b = a == 2 ? 0 : a + 1;
+        const double side = (t.x[b] - t.x[a]) * (y - t.y[a]) - (t.y[b] - t.y[a]) * (x - t.x[a]);
+        left = left || side > 0;
+        right = right || side < 0;
+    }
+    return !(left && right);
+}
+
 // A part of a window: columns x0 ... x1, rows y0 ... y1 and voxels up to `top`.
 struct Area {
     int x0, x1, y0, y1, top;
 };
 
-template <class Wide, class Rest>
-inline void cover_area(const Corners& t, const Area& area, bool crosses, Pieces* pieces, TileSurface& surface) {
+template <class Wide, class Rest, bool centres>
+inline void cover_area(const Corners& t, const Area& area, const Wanted& wanted, Pieces* pieces, TileSurface& surface) {
     const auto [x0, x1, y0, y1, top] = area;
     const int first_group = x0 / kLanes, first_column = first_group * kLanes;
-    const Rows rows(t, y0, y1 - y0 + 1, x0, x1, top, crosses);
+    const Rows rows(t, y0, y1 - y0 + 1, x0, x1, top, wanted.crosses, centres ? kCentre : kSample);
     Extents columns;
     find_columns(t, first_column, x1 - first_column + 1, columns);
     PlaneRows<Wide, Rest> plane(t, first_column, y0);
@@ -200,8 +216,8 @@ inline void cover_area(const Corners& t, const Area& area, bool crosses, Pieces*
         const double row_lo = rows.z.lo[row], row_hi = rows.z.hi[row];
         if (from > to || row_lo > row_hi)
             continue;
-        const int first_brick = static_cast<int>(row_lo) >> kBrickBits,
-                  last_brick = static_cast<int>(row_hi) >> kBrickBits;
+        const int highest = static_cast<int>(row_hi), first_brick = static_cast<int>(row_lo) >> kBrickBits,
+                  last_brick = (highest + (centres && highest < top)) >> kBrickBits;
         const uint64_t covered = bits_between(from, to);
         const uint64_t crossed = bits_between(rows.crossed_from[row], rows.crossed_to[row]);
         plane.begin_row();
@@ -215,19 +231,36 @@ inline void cover_area(const Corners& t, const Area& area, bool crosses, Pieces*
             z.hi = smaller(z.hi, all(row_hi));
             plane.narrow(z);
             z.lo = smaller(z.lo, all(kBeyond)); // all fit 32 bits
-            alignas(32) int32_t lo[kLanes], hi[kLanes];
+            alignas(32) int32_t lo[kLanes], hi[kLanes], above[kLanes];
+            if constexpr (centres) {
+                Mask on;
+                const Lanes below = smaller(larger(plane.centres(on), all(-kBeyond)), all(kBeyond));
+                store_as_int(above, if_less(below, all(top), below + all(1), all(kBeyond)));
+                uint64_t held = wanted.holds ? on & (covered >> group * kLanes) : 0;
+                for (alignas(64) double heights[kLanes]; held != 0; held &= held - 1) {
+                    store(heights, below);
+                    const int lane = __builtin_ctzll(held), x = group * kLanes + lane;
+                    if (heights[lane] <= top && is_over(t, x * kVoxel + kCentre, y * kVoxel + kCentre))
+                        surface.hold_in_tile(x, y, static_cast<int>(heights[lane]));
+                }
+            }
             store_as_int(lo, z.lo);
             store_as_int(hi, larger(z.hi, z.lo - all(1)));
-            if (pieces != nullptr)
-                for (int i = 0; i < kLanes; ++i)
-                    if (lo[i] <= hi[i] && (covered >> (group * kLanes + i) & 1) != 0)
-                        pieces->add_column(group * kLanes + i, y, lo[i], hi[i]);
+            if (pieces != nullptr) {
+                alignas(64) double above_corners[kLanes];
+                store(above_corners, plane.above_corners(z.lo));
+                const uint64_t columns = covered >> group * kLanes & 0xFF & ~uint64_t{less(z.hi, z.lo)};
+                pieces->add_columns(columns, group, y, lo, hi, above_corners);
+            }
             for (int brick = first_brick; brick <= last_brick; brick += IntervalBytes::kBricks) {
-                const IntervalBytes bytes(lo, hi, brick * kBrickSide);
-                for (int i = 0; i < IntervalBytes::kBricks && brick + i <= last_brick; ++i)
+                const IntervalBytes bytes(lo, hi, centres ? above : lo, brick * kBrickSide);
+                for (int i = 0; i < IntervalBytes::kBricks && brick + i <= last_brick; ++i) {
+                    const ColumnBytes marked = bytes.marked[i] & crossing;
                     if ((bytes.inside[i] & inside) != 0)
-                        surface.add_row(group, y, brick + i, bytes.inside[i] & inside, bytes.begins[i] & crossing,
-                                        plane.enters());
+                        surface.add_row(group, y, brick + i, bytes.inside[i] & inside, marked, plane.enters());
+                    else if (marked != 0)
+                        surface.cross_row(group, y, brick + i, marked, plane.enters());
+                }
             }
         }
     }
@@ -259,18 +292,21 @@ void VOXRT_COVER_BY_VECTORS(const Vertex& a, const Vertex& b, const Vertex& c, c
         return high - low;
     };
     const Area area{x0, x1, y0, y1, w.top};
-    if (!(width(t.x) < kNarrowExtent && width(t.y) < kNarrowExtent && width(t.z) < kNarrowExtent)) {
-        cover_area<int128, LongLanes>(t, area, wanted.crosses, nullptr, surface);
-    } else if (!wanted.pieces) {
-        cover_area<int64_t, Lanes>(t, area, wanted.crosses, nullptr, surface);
-    } else {
-        double z[3];
-        for (int i = 0; i < 3; ++i)
-            z[i] = corners[i]->z;
-        Pieces pieces(t.x, t.y, z, surface);
-        cover_area<int64_t, Lanes>(t, area, wanted.crosses, &pieces, surface);
-        pieces.finish();
+    const bool narrow = width(t.x) < kNarrowExtent && width(t.y) < kNarrowExtent && width(t.z) < kNarrowExtent;
+    const auto cover = narrow && wanted.centres ? cover_area<int64_t, Lanes, true>
+                       : narrow                 ? cover_area<int64_t, Lanes, false>
+                       : wanted.centres         ? cover_area<int128, LongLanes, true>
+                                                : cover_area<int128, LongLanes, false>;
+    if (!wanted.pieces) {
+        cover(t, area, wanted, nullptr, surface);
+        return;
     }
+    double z[3];
+    for (int i = 0; i < 3; ++i)
+        z[i] = corners[i]->z;
+    Pieces pieces(t.x, t.y, z, surface);
+    cover(t, area, wanted, &pieces, surface);
+    pieces.finish();
 }
 
 } // namespace voxrt::voxelize

@@ -7,8 +7,8 @@
 // height. The volume between it and the height comes from the area's first moments.
 //
 // Error, in u = 2^-53: a point where an edge meets a plane is within 6 u times the triangle's extent in voxels. The
-// height at which volumes begin is a quotient of exact integers. fits_pieces() keeps the slope times the extent below
-// 2^7, so that a piece's volume is within 2^-42.
+// height at which volumes begin is a quotient of whole numbers, within 2 u. fits_pieces() keeps the slope times the
+// extent below a limit: 2^7 for pieces within 2^-42.
 //
 // Cost: 45 operations on eight doubles per edge; three edges per column, and four per voxel above the column's first.
 #pragma once
@@ -72,14 +72,7 @@ public:
             units[i][2] = static_cast<int64_t>(z[i + 1] - z[0]);
         }
         const auto product = [&](int i, int j) { return units[0][i] * units[1][j] - units[0][j] * units[1][i]; };
-        const int64_t nx = product(1, 2), ny = product(2, 0), nz = product(0, 1), sign = nz < 0 ? -1 : 1;
-        nx_ = sign * nx;
-        ny_ = sign * ny;
-        unit_ = sign * nz * kUnit;
-        x_ = static_cast<int64_t>(x[0]);
-        y_ = static_cast<int64_t>(y[0]);
-        offset_ = sign * nz * static_cast<int64_t>(z[0]);
-        per_unit_ = 1 / static_cast<double>(unit_);
+        const int64_t nx = product(1, 2), ny = product(2, 0), nz = product(0, 1);
         slope_x_ = ratio(-nx, nz);
         slope_y_ = ratio(-ny, nz);
         level_slope_ = ratio(-nx, ny);
@@ -100,21 +93,19 @@ public:
         }
     }
 
-    // The triangle is in voxels lo ... hi of column (x, y).
-    void add_column(int x, int y, int lo, int hi) {
-        // How far the plane is above the lowest voxel at the column's corner: exact but for the quotient.
-        const int64_t above = nx_ * (x_ - x * kUnit) + ny_ * (y_ - y * kUnit) + offset_ - lo * unit_;
-        columns_.x[count_] = x;
-        columns_.y[count_] = y;
-        columns_.z[count_] = lo;
-        columns_.voxels[count_] = hi - lo + 1;
-        left_[count_] = x;
-        front_[count_] = y;
-        lowest_[count_] = lo;
-        voxels_[count_] = hi - lo + 1;
-        above_[count_] = static_cast<double>(above) * per_unit_;
-        if (++count_ == kLanes)
-            finish();
+    // The triangle is in voxels lo ... hi of some columns of a group. `above`: how far its plane is above the lowest of
+    // these at the columns' lowest corners.
+    void add_columns(uint64_t columns, int group, int y, const int32_t* lo, const int32_t* hi, const double* above) {
+        for (; columns != 0; columns &= columns - 1) {
+            const int i = __builtin_ctzll(columns);
+            columns_.x[count_] = group * kLanes + i;
+            columns_.y[count_] = y;
+            columns_.z[count_] = lo[i];
+            columns_.voxels[count_] = hi[i] - lo[i] + 1;
+            above_[count_] = above[i];
+            if (++count_ == kLanes)
+                finish();
+        }
     }
 
     // Adds the columns that are left to the surface.
@@ -122,17 +113,17 @@ public:
         if (count_ == 0)
             return;
         int most = 0;
-        for (int i = 0; i < count_; ++i)
+        for (int i = 0; i < kLanes; ++i) {
+            const int from = i < count_ ? i : 0;
+            columns_.x[i] = columns_.x[from];
+            columns_.y[i] = columns_.y[from];
+            columns_.z[i] = columns_.z[from];
+            columns_.voxels[i] = columns_.voxels[from];
+            above_[i] = above_[from];
             most = columns_.voxels[i] > most ? columns_.voxels[i] : most;
-        for (int i = count_; i < kLanes; ++i) {
-            left_[i] = left_[0];
-            front_[i] = front_[0];
-            lowest_[i] = lowest_[0];
-            above_[i] = above_[0];
-            voxels_[i] = 1;
         }
-        const Lanes left = load(left_), front = load(front_), lowest = load(lowest_), voxels = load(voxels_),
-                    above = load(above_);
+        const Lanes left = load_ints(columns_.x), front = load_ints(columns_.y), lowest = load_ints(columns_.z),
+                    voxels = load_ints(columns_.voxels), above = load(above_);
         Line lines[3];
         Lanes tops[3];
         Moments whole;
@@ -151,9 +142,11 @@ public:
                 area = if_less(all(n), voxels, lower.area, area);
                 volume = if_less(all(n), voxels, volume_below(lower, all(n) - above), volume);
             }
-            store(columns_.areas, area - area_before);
-            store(columns_.volumes, volume - volume_before - area_before);
-            surface_.add_pieces(columns_, count_, n - 1);
+            const int level = (n - 1) % ColumnPieces::kLevels;
+            store(columns_.areas[level], area - area_before);
+            store(columns_.volumes[level], volume - volume_before - area_before);
+            if (level == ColumnPieces::kLevels - 1 || n == most)
+                surface_.add_pieces(columns_, count_, n - 1 - level, n);
             area_before = area;
             volume_before = volume;
         }
@@ -203,14 +196,13 @@ private:
 
     TileSurface& surface_;
     Edge edges_[3];
-    int64_t nx_, ny_, unit_, x_, y_, offset_; // the plane, its normal upwards
-    double per_unit_, middle_;                // middle_: the height of the corner between the others
-    double slope_x_, slope_y_;                // z per x and y
-    double level_slope_, level_inverse_;      // y per x and x per y where z does not change
-    bool turns_back_;                         // the corners run from the lowest to the middle one
+    double middle_;                      // the height of the corner between the others
+    double slope_x_, slope_y_;           // z per x and y
+    double level_slope_, level_inverse_; // y per x and x per y where z does not change
+    bool turns_back_;                    // the corners run from the lowest to the middle one
     int count_ = 0;
     ColumnPieces columns_;
-    alignas(64) double left_[kLanes], front_[kLanes], lowest_[kLanes], voxels_[kLanes], above_[kLanes];
+    alignas(64) double above_[kLanes];
 };
 
 } // namespace

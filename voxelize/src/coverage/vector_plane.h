@@ -36,12 +36,16 @@ inline Lanes less_if_reached(const Lanes& rest, const Lanes& limit) {
     return rest - if_less(rest, limit, all(0), limit);
 }
 inline Lanes chosen(Mask lanes, const Lanes& v) { return choose(lanes, v, all(0)); }
+inline Lanes numbers(const Lanes& lanes) { return lanes; }
 
 template <class Operation> inline LongLanes each_long(const Operation& operation) {
     LongLanes out;
     for (int i = 0; i < kParts; ++i)
         out.part[i] = operation(i);
     return out;
+}
+inline Lanes numbers(const LongLanes& lanes) {
+    return each([&](int i) { return __builtin_convertvector(lanes.part[i], Part); });
 }
 inline LongLanes operator+(const LongLanes& a, const LongLanes& b) {
     return each_long([&](int i) { return a.part[i] + b.part[i]; });
@@ -107,7 +111,8 @@ public:
             set_all(carry_, 1);
             height_ = all(4 * kBeyond);
             row_ = Quotients<Rest>(Wide{0}, Wide{1});
-            next_row_ = next_group_ = row_;
+            corner_ = centre_ = next_row_ = next_group_ = row_;
+            per_unit_ = 1;
             row_.whole = all(-2 * kBeyond);
             return;
         }
@@ -118,9 +123,13 @@ public:
         }
         const Wide unit = nz * kUnit;
         set_all(unit_, static_cast<int64_t>(unit));
-        const Quotients<Rest> height(static_cast<Wide>((nx < 0 ? -nx : nx) + (ny < 0 ? -ny : ny)) * kUnit - 1, unit);
+        const Wide spread = static_cast<Wide>((nx < 0 ? -nx : nx) + (ny < 0 ? -ny : ny)) * kUnit;
+        const Quotients<Rest> height(spread - 1, unit);
         height_ = height.whole;
         carry_ = unit_ - height.rest;
+        per_unit_ = 1 / static_cast<double>(unit);
+        corner_ = Quotients<Rest>(static_cast<Wide>((nx > 0 ? nx : 0) + (ny > 0 ? ny : 0)) * kUnit, unit);
+        centre_ = Quotients<Rest>((spread - unit) / 2, unit);
         auto corner = [&](int64_t n, double at) { return static_cast<Wide>(n) * static_cast<int64_t>(at); };
         row_ = Quotients<Rest>(corner(nx, t.x[0]) + corner(ny, t.y[0]) + corner(nz, t.z[0]) -
                                    corner(nx, (x + (nx > 0)) * kVoxel) - corner(ny, (y + (ny > 0)) * kVoxel),
@@ -148,10 +157,30 @@ public:
         z.hi = smaller(group_.whole + height_ + one_unless_less(group_.rest, carry_), z.hi);
     }
 
+    // The highest voxels of a group's columns whose centre is not above the plane. `on`: where it lies on the plane.
+    Lanes centres(Mask& on) const {
+        Quotients<Rest> height = group_;
+        height.add(centre_, unit_);
+        Rest one;
+        set_all(one, 1);
+        on = less(one_unless_less(height.rest, one), all(1));
+        return height.whole;
+    }
+
+    // How far the plane is above some voxels at the lowest corners of a group's columns.
+    Lanes above_corners(const Lanes& voxels) const {
+        Quotients<Rest> height = group_;
+        height.add(corner_, unit_);
+        return ((height.whole - voxels) * numbers(unit_) + numbers(height.rest)) * all(per_unit_);
+    }
+
 private:
     bool enters_;
-    Rest unit_, carry_; // carry_: which rest makes one more than height_
-    Lanes height_;      // (spread - 1) / unit
+    double per_unit_;
+    Rest unit_, carry_;      // carry_: which rest makes one more than height_
+    Lanes height_;           // (spread - 1) / unit
+    Quotients<Rest> corner_; // from where the plane is lowest in a column to the column's lowest corner
+    Quotients<Rest> centre_; // and to its centre, less half a voxel
     Quotients<Rest> row_, next_row_, group_, next_group_;
 };
 

@@ -36,12 +36,12 @@ public:
         }
     }
 
-    /// The brick without its margin.
-    Slices middle() const {
+    /// The brick without its margin. `moved`: how far its rows and planes are moved.
+    Slices middle(int moved = 0) const {
         Slices found{};
         for (int z = 0; z < kBrickSide; ++z)
             for (int y = 0; y < kBrickSide; ++y)
-                found[z] |= uint64_t(row(y, z) >> kFirst & 0xFF) << kBrickSide * y;
+                found[z] |= uint64_t(row(y + moved, z + moved) >> kFirst & 0xFF) << kBrickSide * y;
         return found;
     }
 
@@ -52,16 +52,24 @@ public:
         each([](const uint16_t* r) { return at(r) | at(r + kPlane) | at(r - kPlane); });
     }
 
-    /// Leaves the voxels of cubes of 2 x 2 x 2 voxels of the set, and adds the 26 neighbours of each. The margin is not
-    /// right afterwards.
-    void keep_near_cubes() {
+    /// The voxels of the brick in cubes of 2 x 2 x 2 voxels of the set, and the 26 neighbours of each. The set is lost.
+    Slices near_cubes() {
         static_assert(margin == 2);
-        each([](const uint16_t* r) { return at(r) & at(r) >> 1; });
-        each([](const uint16_t* r) { return at(r) & at(r + 1); });
-        each([](const uint16_t* r) { return at(r) & at(r + kPlane); });
-        each([](const uint16_t* r) { return at(r) >> 1 | at(r) | at(r) << 1 | at(r) << 2; });
-        each([](const uint16_t* r) { return at(r - 2) | at(r - 1) | at(r) | at(r + 1); });
-        each<0>([](const uint16_t* r) { return at(r - 2 * kPlane) | at(r - kPlane) | at(r) | at(r + kPlane); });
+        // Rows are replaced in place, as none before them is read: of cubes, the row of their lowest corner; of what is
+        // near, the row two before.
+        const auto cubes = [](const uint16_t* r) {
+            const Eight both = at(r) & at(r + 1) & at(r + kPlane) & at(r + kPlane + 1);
+            return both & both >> 1;
+        };
+        const auto near_in_plane = [](const uint16_t* r) {
+            const Eight any = at(r) | at(r + 1) | at(r + 2) | at(r + 3);
+            return any >> 1 | any | any << 1 | any << 2;
+        };
+        replace<-margin, kBrickSide + 1>(cubes);
+        replace<-margin, kBrickSide + 1>(near_in_plane);
+        replace<-margin, kBrickSide - margin>(
+            [](const uint16_t* r) { return at(r) | at(r + kPlane) | at(r + 2 * kPlane) | at(r + 3 * kPlane); });
+        return middle(-margin);
     }
 
 private:
@@ -80,17 +88,24 @@ private:
         return found;
     }
 
-    /// Replaces the rows of planes up to `reach` beside the brick by what `of` makes of them and those near, eight at a
-    /// time. The ends of neighbouring planes touch: after three such steps, rows less than three from an end may be
-    /// wrong.
-    template <int reach = margin, class Of> void each(Of of) {
+    /// Replaces the rows of the brick and its margin by what `of` makes of them and those near, eight at a time. The
+    /// ends of neighbouring planes touch: after three such steps, rows less than three from an end may be wrong.
+    template <class Of> void each(Of of) {
         alignas(16) Rows made;
-        constexpr size_t first = size_t(kFirst - reach) * kPlane, end = size_t(kFirst + kBrickSide + reach) * kPlane;
+        constexpr size_t first = size_t(kFirst - margin) * kPlane, end = size_t(kFirst + kBrickSide + margin) * kPlane;
         for (size_t i = first; i < end; i += 8) {
             const Eight eight = of(&rows_[i]);
             std::memcpy(&made[i], &eight, sizeof eight);
         }
         std::memcpy(&rows_[first], &made[first], (end - first) * sizeof rows_[0]);
+    }
+
+    /// Replaces the rows of planes `from` ... `to` - 1 in place.
+    template <int from, int to, class Of> void replace(Of of) {
+        for (size_t i = size_t(kFirst + from) * kPlane; i < size_t(kFirst + to) * kPlane; i += 8) {
+            const Eight eight = of(&rows_[i]);
+            std::memcpy(&rows_[i], &eight, sizeof eight);
+        }
     }
 
     alignas(16) Rows rows_{};

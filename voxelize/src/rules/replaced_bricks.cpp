@@ -36,6 +36,11 @@ public:
 
 private:
     void merge_bricks() {
+        const size_t most = voxels_.brick_codes.size() + bricks_.size();
+        out_.brick_codes.reserve(most);
+        out_.brick_masks.reserve(most);
+        out_.brick_materials.reserve(most);
+        out_.brick_rows.reserve(most);
         size_t next = 0;
         auto add_before = [&](uint64_t code) {
             for (; next < bricks_.size() && bricks_[next].code < code; ++next)
@@ -94,7 +99,7 @@ private:
     };
 
     SparseVoxels& voxels_;
-    const std::vector<ReplacedBrick>& bricks_;
+    const LargeVector<ReplacedBrick>& bricks_;
     const std::vector<std::array<uint8_t, 512>>& cells_;
     SparseVoxels out_;
     std::vector<Octant> octants_;

@@ -16,7 +16,7 @@ struct ReplacedBrick {
 };
 
 struct ReplacedBricks {
-    std::vector<ReplacedBrick> bricks; // in ascending order of their codes
+    LargeVector<ReplacedBrick> bricks; // in ascending order of their codes
     std::vector<std::array<uint8_t, 512>> cells;
 };
 

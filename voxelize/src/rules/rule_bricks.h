@@ -32,27 +32,27 @@ inline size_t find_octant(const SparseVoxels& voxels, uint64_t code) {
 
 class RuleBricks {
 public:
-    /// `voxels`: what is touched; it must outlive this. Bricks that are solid as a whole are added where a voxel beside
-    /// them is not filled.
-    RuleBricks(const SparseVoxels& voxels, std::vector<RuleBrick> bricks)
-        : voxels_(voxels), bricks_(std::move(bricks)) {
+    /// `voxels`: what is touched; it must outlive this. `tiles`: their bricks, by code. `adds_whole`: bricks that are
+    /// solid as a whole are added where a voxel beside them is not filled.
+    RuleBricks(const SparseVoxels& voxels, std::vector<std::vector<RuleBrick>> tiles, bool adds_whole)
+        : voxels_(voxels), tiles_(std::move(tiles)) {
+        join();
         index();
-        std::vector<RuleBrick> beside;
-        for (const RuleBrick& brick : bricks_)
-            add_whole_beside(brick, beside);
+        std::vector<uint64_t> beside;
+        for (const RuleBrick* brick : bricks_)
+            if (adds_whole)
+                add_whole_beside(*brick, beside);
         if (beside.empty())
             return;
-        sort(beside);
-        beside.erase(
-            std::unique(beside.begin(), beside.end(), [](const auto& a, const auto& b) { return a.code == b.code; }),
-            beside.end());
-        bricks_.insert(bricks_.end(), beside.begin(), beside.end());
+        std::sort(beside.begin(), beside.end());
+        beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
+        add_whole(beside);
         index();
     }
 
     size_t size() const { return bricks_.size(); }
-    RuleBrick& operator[](size_t i) { return bricks_[i]; }
-    const RuleBrick& operator[](size_t i) const { return bricks_[i]; }
+    RuleBrick& operator[](size_t i) { return *bricks_[i]; }
+    const RuleBrick& operator[](size_t i) const { return *bricks_[i]; }
 
     static constexpr uint32_t kEmpty = 0xFFFF'FFFF, kFull = 0xFFFF'FFFE;
 
@@ -67,7 +67,7 @@ public:
     /// The 3 x 3 x 3 bricks around brick `i`, itself in the middle: x + 3 y + 9 z. Those without a bit in `wanted` are
     /// not looked for.
     std::array<uint32_t, 27> around(size_t i, uint32_t wanted = 0x7FF'FFFF) const {
-        const uint64_t code = bricks_[i].code;
+        const uint64_t code = bricks_[i]->code;
         const uint32_t side = voxels_.depth > 3 ? 1u << (voxels_.depth - 3) : 1;
         uint64_t codes[3][3]; // by axis, of the coordinate before, its own and the one after
         bool is_in[3][3];
@@ -99,7 +99,7 @@ public:
         }();
         std::array<const Slices*, 27> found;
         for (size_t n = 0; n < 27; ++n)
-            found[n] = around[n] == kEmpty ? &none : around[n] == kFull ? &all : &of(bricks_[around[n]]);
+            found[n] = around[n] == kEmpty ? &none : around[n] == kFull ? &all : &of(*bricks_[around[n]]);
         return found;
     }
 
@@ -156,33 +156,45 @@ private:
                 return table_[at].cube;
     }
 
-    /// Sorts by code. Bricks come in ascending runs, each of a tile's cube.
-    static void sort(std::vector<RuleBrick>& bricks) {
-        const auto is_before = [](const auto& a, const auto& b) { return a.code < b.code; };
-        std::vector<std::span<const RuleBrick>> runs;
-        for (auto at = bricks.cbegin(); at != bricks.cend();) {
-            const auto end = std::adjacent_find(at, bricks.cend(), [&](auto& a, auto& b) { return !is_before(a, b); });
-            const auto next = end == bricks.cend() ? end : end + 1;
-            runs.emplace_back(at, next);
-            at = next;
+    /// Puts the bricks of tiles in order, cube by cube.
+    void join() {
+        std::vector<std::span<RuleBrick>> cubes;
+        size_t count = 0;
+        for (std::vector<RuleBrick>& tile : tiles_) {
+            for (auto at = tile.begin(); at != tile.end();) {
+                const auto end = std::find_if(
+                    at, tile.end(), [&](auto& one) { return one.code >> kCubeBits != at->code >> kCubeBits; });
+                cubes.emplace_back(at, end);
+                at = end;
+            }
+            count += tile.size();
         }
-        if (runs.size() < 2)
-            return;
-        std::sort(runs.begin(), runs.end(), [](auto& a, auto& b) { return a.front().code < b.front().code; });
-        std::vector<RuleBrick> sorted;
-        sorted.reserve(bricks.size());
-        for (const auto& run : runs)
-            sorted.insert(sorted.end(), run.begin(), run.end());
-        if (!std::is_sorted(sorted.begin(), sorted.end(), is_before))
-            std::sort(sorted.begin(), sorted.end(), is_before);
-        bricks = std::move(sorted);
+        std::sort(cubes.begin(), cubes.end(), [](auto& a, auto& b) { return a.front().code < b.front().code; });
+        bricks_.reserve(count);
+        for (const auto& cube : cubes)
+            for (RuleBrick& brick : cube)
+                bricks_.push_back(&brick);
+    }
+
+    /// Adds bricks that are solid as a whole, with codes in ascending order.
+    void add_whole(const std::vector<uint64_t>& codes) {
+        std::vector<RuleBrick>& added = tiles_.emplace_back(codes.size());
+        for (size_t i = 0; i < codes.size(); ++i) {
+            added[i].code = codes[i];
+            added[i].touched.fill(~uint64_t{0});
+            added[i].filled.fill(~uint64_t{0});
+        }
+        const size_t listed = bricks_.size();
+        for (RuleBrick& brick : added)
+            bricks_.push_back(&brick);
+        std::inplace_merge(bricks_.begin(), bricks_.begin() + ptrdiff_t(listed), bricks_.end(),
+                           [](auto* a, auto* b) { return a->code < b->code; });
     }
 
     void index() {
-        sort(bricks_);
         size_t cubes = 0;
         for (size_t i = 0; i < bricks_.size(); ++i)
-            cubes += i == 0 || bricks_[i].code >> kCubeBits != bricks_[i - 1].code >> kCubeBits;
+            cubes += i == 0 || bricks_[i]->code >> kCubeBits != bricks_[i - 1]->code >> kCubeBits;
         int bits = 4;
         while (size_t{1} << bits < 2 * cubes)
             ++bits;
@@ -191,8 +203,8 @@ private:
         cubes_.clear();
         cubes_.reserve(cubes);
         for (size_t i = 0; i < bricks_.size(); ++i) {
-            const uint64_t code = bricks_[i].code >> kCubeBits;
-            if (i == 0 || code != bricks_[i - 1].code >> kCubeBits) {
+            const uint64_t code = bricks_[i]->code >> kCubeBits;
+            if (i == 0 || code != bricks_[i - 1]->code >> kCubeBits) {
                 size_t at = place_of(code);
                 while (table_[at].cube != kEmpty)
                     at = (at + 1) & (table_.size() - 1);
@@ -201,7 +213,7 @@ private:
                 cubes_.emplace_back().fill(
                     octant < voxels_.octant_codes.size() && bits_of(octant) >= kCubeBits ? kFull : kEmpty);
             }
-            cubes_.back()[size_t(bricks_[i].code & (kCubeBricks - 1))] = uint32_t(i);
+            cubes_.back()[size_t(bricks_[i]->code & (kCubeBricks - 1))] = uint32_t(i);
         }
         mark_full();
     }
@@ -230,7 +242,7 @@ private:
         return find(morton(uint32_t(x), uint32_t(y), uint32_t(z)));
     }
 
-    void add_whole_beside(const RuleBrick& brick, std::vector<RuleBrick>& beside) const {
+    void add_whole_beside(const RuleBrick& brick, std::vector<uint64_t>& beside) const {
         const Slices removed = brick.removed();
         uint64_t any = 0;
         for (const uint64_t slice : removed)
@@ -248,15 +260,13 @@ private:
             to[side / 2] += side % 2 == 0 ? -1 : 1;
             if (!reaches[side] || find_at(to[0], to[1], to[2]) != kFull)
                 continue;
-            RuleBrick whole{morton(uint32_t(to[0]), uint32_t(to[1]), uint32_t(to[2])), {}, {}, {}};
-            whole.touched.fill(~uint64_t{0});
-            whole.filled.fill(~uint64_t{0});
-            beside.push_back(whole);
+            beside.push_back(morton(uint32_t(to[0]), uint32_t(to[1]), uint32_t(to[2])));
         }
     }
 
     const SparseVoxels& voxels_;
-    std::vector<RuleBrick> bricks_; // by code
+    std::vector<std::vector<RuleBrick>> tiles_; // and one more of bricks that are added
+    std::vector<RuleBrick*> bricks_;            // by code
     std::vector<std::array<uint32_t, kCubeBricks>> cubes_;
     std::vector<Entry> table_; // of cubes, by open addressing
     int shift_ = 60;

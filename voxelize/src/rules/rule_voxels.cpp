@@ -14,12 +14,12 @@ namespace {
 class RuledVoxels {
 public:
     RuledVoxels(const SparseVoxels& around, RuleFindings& findings)
-        : voxels_(around), bricks_(around, std::move(findings.bricks)), owned_(std::move(findings.owned)),
-          mixed_(std::move(findings.mixed)) {
+        : voxels_(around), only_(material_of_all()), bricks_(around, std::move(findings.bricks), only_ == 0),
+          owned_(std::move(findings.owned)), mixed_(std::move(findings.mixed)) {
         std::sort(mixed_.begin(), mixed_.end(), [](const auto& a, const auto& b) { return a.code < b.code; });
-        has_several_objects_ = std::any_of(owned_.begin(), owned_.end(),
-                                           [this](const auto& one) { return one.object != owned_[0].object; });
-        if (!has_several_objects_)
+        has_rivals_ = only_ == 0 && std::any_of(owned_.begin(), owned_.end(),
+                                                [this](const auto& one) { return one.object != owned_[0].object; });
+        if (!has_rivals_)
             return; // their order does not matter
         std::sort(owned_.begin(), owned_.end(), [](const OwnedSurface& a, const OwnedSurface& b) {
             return a.code != b.code ? a.code < b.code : a.object < b.object;
@@ -31,7 +31,7 @@ public:
     /// Finds the voxels of parts that have none of their own. The bricks must be final.
     void find_orphans(const Workers& workers) {
         orphans_.assign(bricks_.size(), Slices{});
-        if (!has_several_objects_)
+        if (!has_rivals_)
             return; // nothing else could take a material
         for_each_brick(workers, [this](size_t i) {
             if (!is_empty(bricks_[i].removed()))
@@ -66,17 +66,17 @@ public:
     /// The bricks of an area that differ from what is touched.
     ReplacedBricks replaced(const BrickArea& area, const Workers& workers) const {
         std::vector<ReplacedBricks> found((bricks_.size() + kBricks - 1) / kBricks);
-        const uint8_t only = material_of_all();
         for_each_brick(workers, [&](size_t i) {
             const RuleBrick& brick = bricks_[i];
             if (!is_in(area, brick.code))
                 return;
-            if (only == 0)
+            if (only_ == 0)
                 add_replaced(i, found[i / kBricks]);
             else if (!is_empty(brick.removed()))
-                found[i / kBricks].bricks.push_back({brick.code, morton_order(brick.filled), only, 0});
+                found[i / kBricks].bricks.push_back({brick.code, morton_order(brick.filled), only_, 0});
         });
         ReplacedBricks all;
+        all.bricks.reserve(bricks_.size());
         for (ReplacedBricks& part : found) {
             for (ReplacedBrick& brick : part.bricks) {
                 brick.row += uint32_t(all.cells.size());
@@ -89,6 +89,9 @@ public:
     }
 
     void count_lost(const BrickArea& area, std::vector<int64_t>& lost) const {
+        if (lost.size() == 1) // the owner of all
+            for (size_t i = 0; i < bricks_.size(); ++i)
+                lost[0] += is_in(area, bricks_[i].code) ? count(bricks_[i].removed()) : 0;
         for (const OwnedSurface& part : owned_)
             if (is_in(area, part.code))
                 lost[part.object] += count(without(part.voxels, bricks_[bricks_.find(part.code)].filled));
@@ -163,19 +166,24 @@ private:
         const auto filled = [this](uint32_t n) { return bricks_[n].filled; };
         const auto removed_mixed = [this](uint32_t n) { return without(mixed_in(bricks_[n].code), bricks_[n].filled); };
         const auto orphans = [this](uint32_t n) { return orphans_[n]; };
-        const BrickMaterials own = materials_of(voxels_, brick.code);
-        bool is_uniform = own.cells == nullptr;
         Slices lost[6], mixed = mixed_in(brick.code), forced{}, any = mixed, visible{};
-        BrickMaterials beside[6];
         for (int side = 0; side < 6; ++side) {
             lost[side] = RuleBricks::shifted_by(around, side, removed, false);
+            for (size_t z = 0; z < kBrickSide; ++z)
+                any[z] |= lost[side][z] & brick.filled[z];
+        }
+        if (is_empty(any))
+            return;
+        const BrickMaterials own = materials_of(voxels_, brick.code);
+        bool is_uniform = own.cells == nullptr;
+        BrickMaterials beside[6];
+        for (int side = 0; side < 6; ++side) {
             const Slices lost_mixed = RuleBricks::shifted_by(around, side, removed_mixed, false);
             const Slices lying = RuleBricks::shifted_by(around, side, orphans, false);
             const Slices hidden = RuleBricks::shifted_by(around, side, filled, true);
             for (size_t z = 0; z < kBrickSide; ++z) {
                 visible[z] |= ~hidden[z];
                 mixed[z] |= lost_mixed[z];
-                any[z] |= lost[side][z] & brick.filled[z];
                 forced[z] |= lying[z] & brick.surface[z];
             }
             const uint32_t other = around[size_t(kSides[side])];
@@ -356,9 +364,10 @@ private:
     }
 
     const SparseVoxels& voxels_;
+    uint8_t only_; // the material of all, or 0
     RuleBricks bricks_;
     std::vector<OwnedSurface> owned_; // by code and object, where there are several
-    bool has_several_objects_ = false;
+    bool has_rivals_ = false;         // several objects, and materials
     std::vector<MixedSurface> mixed_; // by code
     std::vector<Slices> orphans_;
     std::vector<ShownVoxel> shown_; // by brick

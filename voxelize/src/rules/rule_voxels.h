@@ -21,8 +21,8 @@ namespace voxrt::voxelize {
 
 /// What the tiles of a rule found.
 struct RuleFindings {
-    std::vector<RuleBrick> bricks;
-    std::vector<OwnedSurface> owned;
+    std::vector<std::vector<RuleBrick>> bricks; // by tile
+    std::vector<OwnedSurface> owned;            // where there are several objects
     std::vector<MixedSurface> mixed;
 };
 

@@ -90,35 +90,48 @@ bool leaves_none_alone(const BrickWindow<2>& filled, const BrickWindow<2>& touch
     return true;
 }
 
-/// Whether each touched voxel of a brick is solid in bulk, or beside a voxel that is, by the brick's own voxels.
-bool is_bulk_alone(const RuleBrick& brick) {
+/// The touched voxels of a brick that are neither solid in bulk nor beside a voxel that is, by the brick's own voxels.
+Slices thin_alone(const RuleBrick& brick) {
     constexpr uint64_t lowest = 0x0101'0101'0101'0101, highest = lowest << 7;
     uint64_t cubes[kBrickSide + 3] = {}; // by lowest corner, two slices further
     for (size_t z = 0; z + 1 < kBrickSide; ++z) {
         const uint64_t both = brick.filled[z] & brick.filled[z + 1], pairs = both & both >> 1 & ~highest;
         cubes[z + 2] = pairs & pairs >> 8;
     }
+    Slices found;
     for (size_t z = 0; z < kBrickSide; ++z) {
         const uint64_t near = cubes[z] | cubes[z + 1] | cubes[z + 2] | cubes[z + 3];
         const uint64_t row = near | (near >> 1 & ~highest) | (near << 1 & ~lowest) | (near << 2 & ~(lowest * 3));
-        if ((brick.touched[z] & ~(row | row >> 8 | row << 8 | row << 16)) != 0)
-            return false;
+        found[z] = brick.touched[z] & ~(row | row >> 8 | row << 8 | row << 16);
     }
-    return true;
+    return found;
+}
+
+/// Those of the 3 x 3 x 3 bricks around that have voxels at most two away from some of the middle one.
+uint32_t bricks_near(const Slices& voxels) {
+    constexpr uint64_t first_two = 0x0303'0303'0303'0303;
+    const uint64_t any = any_of(voxels);
+    const bool reaches[6] = {(any & first_two) != 0, (any & first_two << 6) != 0,  (any & 0xFFFF) != 0,
+                             any >> 48 != 0,         (voxels[0] | voxels[1]) != 0, (voxels[6] | voxels[7]) != 0};
+    uint32_t found = kMiddle;
+    for (int axis = 0, step = 1; axis < 3; ++axis, step *= 3)
+        found |= (reaches[2 * axis] ? found >> step : 0) | (reaches[2 * axis + 1] ? found << step : 0);
+    return found;
 }
 
 /// The voxels of a brick that belong to thin parts.
 Slices find_thin(const RuleBricks& bricks, size_t i) {
-    if (is_bulk_alone(bricks[i]))
-        return {};
+    const Slices alone = thin_alone(bricks[i]);
+    if (is_empty(alone))
+        return alone;
     BrickWindow<2> bulk;
-    bulk.gather(bricks.sets(bricks.around(i), [](const RuleBrick& b) -> const Slices& { return b.filled; }));
-    bulk.keep_near_cubes();
-    return without(bricks[i].touched, bulk.middle());
+    const auto filled = [](const RuleBrick& b) -> const Slices& { return b.filled; };
+    bulk.gather(bricks.sets(bricks.around(i, bricks_near(alone)), filled));
+    return without(alone, bulk.near_cubes());
 }
 
 /// The voxels of a brick that are not filled, of thin parts or beside one of their voxels.
-Slices find_candidates(const RuleBricks& bricks, const std::vector<Slices>& thin, size_t i,
+Slices find_candidates(const RuleBricks& bricks, const LargeVector<Slices>& thin, size_t i,
                        const std::array<uint32_t, 27>& around) {
     static constexpr Slices none{};
     std::array<const Slices*, 27> near;
@@ -169,7 +182,8 @@ void take(const RuleBricks& bricks, ThinBrick& thin, int turn) {
 void keep_thin_parts(RuleBricks& bricks, const Workers& workers) {
     constexpr size_t kBricks = 64; // per job
     const size_t jobs = (bricks.size() + kBricks - 1) / kBricks;
-    std::vector<Slices> of_thin_parts(bricks.size());
+    LargeVector<Slices> of_thin_parts;
+    of_thin_parts.resize(bricks.size());
     std::vector<uint8_t> has_some(jobs);
     workers.run(jobs, [&](size_t job, int) {
         for (size_t i = job * kBricks; i < std::min(bricks.size(), (job + 1) * kBricks); ++i) {

@@ -174,7 +174,7 @@ int64_t claim_convex(TileVoxels& tile, RuleTile* rule, const Window& w, const So
                 continue;
             if constexpr (requires { solid.volume(0, 0, 0); })
                 if (fill && rule->asks_for_volumes()) {
-                    std::array<double, kBrickVoxels> volumes;
+                    std::array<double, kBrickVoxels>& volumes = rule->room_for_volumes(column, k);
                     for (int z = 0; z < kBrickSide; ++z) {
                         filled[z] = mask[z] & ~surface[z];
                         for (uint64_t left = surface[z]; left != 0; left &= left - 1) {
@@ -183,7 +183,7 @@ int64_t claim_convex(TileVoxels& tile, RuleTile* rule, const Window& w, const So
                                 solid.volume(cx + column_x(bit), cy + column_y(bit), k * kBrickSide + z);
                         }
                     }
-                    rule->add_volumes(column, k, surface, volumes);
+                    rule->add_volumes(column, k, surface);
                 }
             for (int z = 0; z < kBrickSide; ++z) {
                 filled[z] = fill && !rule->fills_all() ? filled[z] & mask[z] : mask[z];

@@ -24,8 +24,8 @@ struct HalfDoubt {
 
 class RuleTile {
 public:
-    /// For tiles of a grid of `side` voxels.
-    explicit RuleTile(int side) : filled_(side), surface_(side), mixed_(side) {}
+    /// For tiles of a grid of `side` voxels. `has_owners`: whether it is noted which object has which surface.
+    RuleTile(int side, bool has_owners) : filled_(side), surface_(side), mixed_(side), has_owners_(has_owners) {}
 
     /// Empties it for the tile at (tile_x, tile_y), in tiles.
     void clear(int tile_x, int tile_y) {
@@ -73,50 +73,39 @@ public:
             several[size_t(z)] |= mixed[size_t(z)];
         if (!is_empty(several))
             mixed_.claim(column, k, several, kAny, nullptr);
-        if (!is_empty(claimed))
+        if (has_owners_ && !is_empty(claimed))
             owned_.push_back({code_of(column, k), object_, claimed});
     }
 
-    /// Adds volumes of the part in voxels of a brick, by slice and bit.
-    void add_volumes(int column, int k, const Slices& voxels, const std::array<double, kBrickVoxels>& volumes) {
-        const size_t slot = size_t(column) * size_t(filled_.height()) + size_t(k);
-        if (sum_rows_.empty())
-            sum_rows_.assign(size_t(kTileColumns) * size_t(filled_.height()), kNone);
-        uint32_t& row = sum_rows_[slot];
-        if (row == kNone) {
-            row = uint32_t(sums_.size());
-            sums_.emplace_back();
-            last_summands_.push_back(kNone);
-            summed_.push_back(slot);
-        }
-        summands_.push_back({voxels, part_, last_summands_[row]});
-        last_summands_[row] = uint32_t(summands_.size() - 1);
-        sums_[row].add(voxels, volumes);
+    /// Where the volumes of the part in a brick are to be written, by slice and bit. Only those count whose voxels
+    /// add_volumes() adds.
+    std::array<double, kBrickVoxels>& room_for_volumes(int column, int k) {
+        Sums& sums = sums_[row_of_sums(column, k)];
+        return sums.empty() ? sums.values() : more_volumes_;
     }
 
-    /// Appends the bricks of the tile, and who owns their surface. Returns the voxels that volumes do not decide.
+    /// Adds the volumes in voxels of a brick, which room_for_volumes() has got.
+    void add_volumes(int column, int k, const Slices& voxels) {
+        const uint32_t row = row_of_sums(column, k);
+        summands_.push_back({voxels, part_, last_summands_[row]});
+        last_summands_[row] = uint32_t(summands_.size() - 1);
+        sums_[row].add(voxels, more_volumes_);
+    }
+
+    /// Appends the bricks of the tile, by code, and who owns their surface. Returns the voxels that volumes do not
+    /// decide.
     std::vector<HalfDoubt> list(const TileVoxels& tile, std::vector<RuleBrick>& bricks,
                                 std::vector<OwnedSurface>& owned, std::vector<MixedSurface>& mixed) const {
         std::vector<HalfDoubt> doubts;
-        for (int column = 0; column < kTileColumns; ++column) {
-            if (!tile.column_used(column))
-                continue;
-            for (int k = 0; k < tile.height(); ++k) {
-                const uint32_t slot = *tile.slots(column, k), surface = *surface_.slots(column, k);
-                if (slot == 0 || (slot < TileVoxels::kFirstBrick && surface == 0))
-                    continue;
-                const Slices touched = tile.mask_of(slot);
-                Slices filled = filled_.mask_of(*filled_.slots(column, k));
-                const size_t place = size_t(column) * size_t(tile.height()) + size_t(k);
-                if (!summed_.empty() && sum_rows_[place] != kNone)
-                    if (const Slices near = sums_[sum_rows_[place]].add_halves(filled, error_bound()); !is_empty(near))
-                        doubts.push_back({bricks.size(), column, k, near});
-                for (int z = 0; z < kBrickSide; ++z)
-                    filled[z] &= touched[z];
-                bricks.push_back({code_of(column, k), touched, filled, surface_.mask_of(surface)});
-                if (const uint32_t several = *mixed_.slots(column, k); several != 0)
-                    mixed.push_back({code_of(column, k), mixed_.mask_of(several)});
-            }
+        bricks.reserve(tile.bricks());
+        for (int base = 0; base < tile.height(); base += kTileBricks) {
+            const Slices listed = listed_in(tile, base);
+            for (size_t word = 0; word < listed.size(); ++word)
+                for (uint64_t left = listed[word]; left != 0; left &= left - 1) {
+                    const uint64_t at = word * 64 + uint64_t(std::countr_zero(left));
+                    const int column = int(gather_bits(at) + gather_bits(at >> 1) * kTileBricks);
+                    add_brick(tile, column, base + int(gather_bits(at >> 2)), bricks, mixed, doubts);
+                }
         }
         owned.insert(owned.end(), owned_.begin(), owned_.end());
         return doubts;
@@ -129,9 +118,9 @@ public:
     /// d = 2^-40.8 of those of the true piece. In a cell a piece has a perimeter below 6 and an area below 1.5, so the
     /// area seen from above is wrong by 6 d at most and the volume by 8 d, once per triangle and column: pieces of one
     /// column share the corners where planes between its voxels cut. Rounding in the cell is a few u per piece, of at
-    /// most 2^16. Whole cells below a plane have an error of 32 u; vector_pieces.h has less than its cuts. All that is
-    /// below 2^-32 per triangle. Sums of N numbers up to N in size add N^2 u, and those along 2^16 voxels of a column
-    /// N 2^-37.
+    /// most 2^16. Whole cells below a plane have an error of 32 u; vector_pieces.h stays below 2^-34 (kHalfLimit). All
+    /// that is below 2^-32 per triangle. Sums of N numbers up to N in size add N^2 u, and those along 2^16 voxels of a
+    /// column N 2^-37.
     double error_bound() const { return triangles_ * 0x1p-31 + triangles_ * triangles_ * 0x1p-52; }
 
     /// Calls take(part) with the parts whose volumes a voxel of a brick sums.
@@ -143,19 +132,13 @@ public:
     }
 
     /// Appends the volumes of the last object, and forgets it.
-    void take_volumes(std::vector<VoxelVolume>& volumes) {
+    void take_volumes(TileVolumes& volumes) {
         for (const size_t slot : summed_) {
             const auto column = int(slot / size_t(filled_.height())), k = int(slot % size_t(filled_.height()));
-            const uint64_t code = code_of(column, k) << 9;
-            const Slices surface = surface_.mask_of(*surface_.slots(column, k));
             const Slices whole = filled_.mask_of(*filled_.slots(column, k)); // by another part
-            for (int z = 0; z < kBrickSide; ++z)
-                for (uint64_t left = surface[z] & ~whole[z]; left != 0; left &= left - 1) {
-                    const int bit = std::countr_zero(left);
-                    const uint64_t place = morton(uint32_t(column_x(bit)), uint32_t(column_y(bit)), uint32_t(z));
-                    const double volume = sums_[sum_rows_[slot]].at(z, bit);
-                    volumes.push_back({object_, code | place, std::min(volume, 1.0)});
-                }
+            const Slices voxels = without(surface_.mask_of(*surface_.slots(column, k)), whole);
+            volumes.bricks.push_back({object_, code_of(column, k), voxels});
+            sums_[sum_rows_[slot]].append(voxels, volumes.values);
         }
         clear(tile_x_, tile_y_);
     }
@@ -168,9 +151,14 @@ private:
     public:
         Sums() : summed_{} {} // without the values
 
+        bool empty() const { return is_empty(summed_); }
+        std::array<double, kBrickVoxels>& values() { return values_; }
+
+        /// Adds to what there is; the first volumes are among the values already.
         void add(const Slices& voxels, const std::array<double, kBrickVoxels>& volumes) {
+            const bool is_first = empty();
             for (int z = 0; z < kBrickSide; ++z) {
-                for (uint64_t left = voxels[z]; left != 0; left &= left - 1) {
+                for (uint64_t left = is_first ? 0 : voxels[z]; left != 0; left &= left - 1) {
                     const auto place = size_t(z * 64 + std::countr_zero(left));
                     const bool has_sum = (summed_[z] & left & (~left + 1)) != 0;
                     values_[place] = has_sum ? values_[place] + volumes[place] : volumes[place];
@@ -178,7 +166,15 @@ private:
                 summed_[z] |= voxels[z];
             }
         }
-        double at(int z, int bit) const { return summed_[z] >> bit & 1 ? values_[size_t(z * 64 + bit)] : 0; }
+
+        /// Appends those of some voxels, slice by slice, 1 at most.
+        void append(const Slices& voxels, std::vector<double>& to) const {
+            for (int z = 0; z < kBrickSide; ++z)
+                for (uint64_t left = voxels[z]; left != 0; left &= left - 1) {
+                    const int bit = std::countr_zero(left);
+                    to.push_back(summed_[z] >> bit & 1 ? std::min(values_[size_t(z * 64 + bit)], 1.0) : 0);
+                }
+        }
 
         /// Fills the voxels whose sums are above a half. Returns those nearer to it than `error`.
         Slices add_halves(Slices& filled, double error) const {
@@ -204,18 +200,72 @@ private:
         uint32_t part, before; // of the brick
     };
 
+    uint32_t row_of_sums(int column, int k) {
+        const size_t slot = size_t(column) * size_t(filled_.height()) + size_t(k);
+        if (sum_rows_.empty())
+            sum_rows_.assign(size_t(kTileColumns) * size_t(filled_.height()), kNone);
+        uint32_t& row = sum_rows_[slot];
+        if (row == kNone) {
+            row = uint32_t(sums_.size());
+            sums_.emplace_back();
+            last_summands_.push_back(kNone);
+            summed_.push_back(slot);
+        }
+        return row;
+    }
+
+    /// Which bricks of a cube are solid in part, or solid with surface: bits by Morton code.
+    Slices listed_in(const TileVoxels& tile, int base) const {
+        Slices listed{};
+        const int levels = std::min(kTileBricks, tile.height() - base);
+        for (int column = 0; column < kTileColumns; ++column) {
+            const uint32_t *slots = tile.slots(column, base), *surfaces = surface_.slots(column, base);
+            uint32_t any = 0, any_surface = 0;
+            for (int z = 0; z < levels; ++z) {
+                any |= slots[z];
+                any_surface |= surfaces[z];
+            }
+            if (any < TileVoxels::kFirstBrick && any_surface == 0)
+                continue;
+            const uint64_t lowest = morton(uint32_t(column % kTileBricks), uint32_t(column / kTileBricks), 0);
+            for (int z = 0; z < levels; ++z)
+                if (slots[z] >= TileVoxels::kFirstBrick || (slots[z] != 0 && surfaces[z] != 0)) {
+                    const uint64_t at = lowest | morton(0, 0, uint32_t(z));
+                    listed[at / 64] |= uint64_t{1} << at % 64;
+                }
+        }
+        return listed;
+    }
+
+    void add_brick(const TileVoxels& tile, int column, int k, std::vector<RuleBrick>& bricks,
+                   std::vector<MixedSurface>& mixed, std::vector<HalfDoubt>& doubts) const {
+        const Slices touched = tile.mask_of(*tile.slots(column, k));
+        Slices filled = filled_.mask_of(*filled_.slots(column, k));
+        const size_t place = size_t(column) * size_t(tile.height()) + size_t(k);
+        if (!summed_.empty() && sum_rows_[place] != kNone)
+            if (const Slices near = sums_[sum_rows_[place]].add_halves(filled, error_bound()); !is_empty(near))
+                doubts.push_back({bricks.size(), column, k, near});
+        for (int z = 0; z < kBrickSide; ++z)
+            filled[z] &= touched[z];
+        bricks.push_back({code_of(column, k), touched, filled, surface_.mask_of(*surface_.slots(column, k))});
+        if (const uint32_t several = *mixed_.slots(column, k); several != 0)
+            mixed.push_back({code_of(column, k), mixed_.mask_of(several)});
+    }
+
     uint64_t code_of(int column, int k) const {
         return morton(uint32_t(tile_x_ * kTileBricks + column % kTileBricks),
                       uint32_t(tile_y_ * kTileBricks + column / kTileBricks), uint32_t(k));
     }
 
     TileVoxels filled_, surface_, mixed_;
+    bool has_owners_;
     std::vector<uint32_t> sum_rows_; // by slot: where the sums of volumes stand
     std::vector<size_t> summed_;     // the slots that have some
     std::vector<Sums> sums_;
     std::vector<Summand> summands_;
-    std::vector<uint32_t> last_summands_; // by row of sums_
-    double triangles_ = 0;                // of parts that ask for volumes
+    std::vector<uint32_t> last_summands_;           // by row of sums_
+    std::array<double, kBrickVoxels> more_volumes_; // of a part, where another one has some
+    double triangles_ = 0;                          // of parts that ask for volumes
     uint32_t part_ = 0, object_ = 0;
     Rule rule_of_part_ = Rule::touch;
     int tile_x_ = 0, tile_y_ = 0; // in tiles

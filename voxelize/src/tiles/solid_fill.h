@@ -132,6 +132,7 @@ private:
             const Crossings crossings(*brick);
             const uint32_t index = object.index_of(*brick);
             const VolumePieces* pieces = brick->pieces == kNone ? nullptr : &object.pieces(brick->pieces);
+            std::array<double, kBrickVoxels>* volumes = has_volumes ? &rule_->room_for_volumes(column, k) : nullptr;
             for (int z = 0; z < slices; ++z) {
                 // Below its surface a solid fills as many voxels as the winding number says, which has no rounding.
                 for (uint64_t begun = surface[z] & ~summed; begun != 0; begun &= begun - 1)
@@ -139,10 +140,10 @@ private:
                 summed = surface[z];
                 advance(winding, crossings, index, brick->has_repeated, z);
                 within[z] = winding.inside();
-                add_volumes(pieces, surface[z], z);
+                add_volumes(pieces ? pieces->slice(z) : nullptr, surface[z], volumes, z);
             }
-            if (pieces)
-                summed = carry_volumes(*pieces, summed, winding);
+            if (const double* carried = pieces ? pieces->slice(kBrickSide) : nullptr)
+                summed = carry_volumes(carried, summed, winding);
             claim_brick(tile, object, column, k, *brick, within, interior, result);
             ++k;
         }
@@ -151,27 +152,25 @@ private:
 
     /// Adds to `below_` what pieces of a brick add to the brick above. Returns the columns that are summed: those that
     /// were, and those where a flat piece lies between the bricks, whose surface begins above.
-    uint64_t carry_volumes(const VolumePieces& pieces, uint64_t summed, const ColumnWinding& winding) {
+    uint64_t carry_volumes(const double* carried, uint64_t summed, const ColumnWinding& winding) {
         for (int bit = 0; bit < 64; ++bit) {
-            const double carried = pieces[size_t(kBrickVoxels + bit)];
-            if (carried == 0)
+            if (carried[bit] == 0)
                 continue;
             if ((summed >> bit & 1) == 0)
                 below_[bit] = winding.at(bit);
-            below_[bit] += carried;
+            below_[bit] += carried[bit];
             summed |= uint64_t{1} << bit;
         }
         return summed;
     }
 
     /// Finds the volumes of the voxels of a slice that have surface.
-    void add_volumes(const VolumePieces* pieces, uint64_t surface, int z) {
+    void add_volumes(const double* pieces, uint64_t surface, std::array<double, kBrickVoxels>* volumes, int z) {
         for (uint64_t left = surface; left != 0; left &= left - 1) {
             const int bit = std::countr_zero(left);
-            const auto place = size_t(z * 64 + bit);
             if (pieces)
-                below_[bit] += (*pieces)[place];
-            volumes_[place] = std::min(std::abs(below_[bit]), 1.0);
+                below_[bit] += pieces[bit];
+            (*volumes)[size_t(z * 64 + bit)] = std::min(std::abs(below_[bit]), 1.0);
         }
     }
 
@@ -283,7 +282,7 @@ private:
         const Slices held = object.held(brick);
         const bool by_volume = rule_->asks_for_volumes() && !is_capped_;
         if (by_volume)
-            rule_->add_volumes(column, k, shell, volumes_);
+            rule_->add_volumes(column, k, shell);
         Slices filled;
         for (int z = 0; z < kBrickSide; ++z) {
             filled[z] = rule_->fills_all() ? mask[z]
@@ -322,8 +321,7 @@ private:
 
     RuleTile* rule_ = nullptr;
     bool is_capped_ = false;
-    std::array<double, 64> below_{};             // by column: the volume below the slice, per voxel
-    std::array<double, kBrickVoxels> volumes_{}; // of a brick's voxels with surface
+    std::array<double, 64> below_{}; // by column: the volume below the slice, per voxel
     std::vector<RepeatedCrossing> repeated_;
     GeneralizedInside inside_;
     std::vector<int> numbers_; // winding numbers of the capped surface in a brick, by slice and bit

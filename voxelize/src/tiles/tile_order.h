@@ -32,7 +32,7 @@ struct TileResult {
     std::vector<RuleBrick> rule_bricks; // these three for rules other than `touch`
     std::vector<OwnedSurface> owned;
     std::vector<MixedSurface> mixed;
-    std::vector<VoxelVolume> volumes; // where these alone are wanted
+    TileVolumes volumes; // where these alone are wanted
 };
 
 class TileSorter {

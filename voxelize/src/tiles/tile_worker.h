@@ -22,7 +22,7 @@ inline constexpr double kNotedOpening = 0.01;
 /// What a thread keeps from tile to tile.
 struct Scratch {
     Scratch(int side, size_t objects, size_t parts, bool has_rule)
-        : surface(side), tile(side), rule(has_rule ? std::make_unique<RuleTile>(side) : nullptr),
+        : surface(side), tile(side), rule(has_rule ? std::make_unique<RuleTile>(side, objects > 1) : nullptr),
           object_voxels(objects, 0), shell_of_open(objects, 0), inside_of_open(objects, 0), overlaps_itself(parts, 0) {
         fill.use_rule(rule.get());
     }
@@ -50,21 +50,13 @@ private:
     TileSurface& surface_;
 };
 
-/// Receiver of find_centres for volumes, to which centres mean nothing.
-class CrossingsAlone {
-public:
-    explicit CrossingsAlone(TileSurface& surface) : surface_(surface) {}
-    void cross(int x, int y, int z, bool enters) { surface_.cross(x, y, z, enters); }
-    void hold(int, int, int, int) {}
-
-private:
-    TileSurface& surface_;
-};
-
 class TileWorker : TileParts {
 public:
-    TileWorker(const std::vector<PartView>& parts, const TriangleBins& bins, int side, const CoverageEngine& engine)
-        : TileParts(parts, bins, side), cover_by_vectors_(engine.cover_by_vectors) {}
+    /// `finds_volumes`: whether find_volumes() is called, or else work().
+    TileWorker(const std::vector<PartView>& parts, const TriangleBins& bins, int side, const CoverageEngine& engine,
+               bool finds_volumes)
+        : TileParts(parts, bins, side), cover_by_vectors_(engine.cover_by_vectors),
+          piece_limit_(finds_volumes ? kFineLimit : kHalfLimit) {}
 
     /// `slot`: the place of `out` among the results of a block.
     void work(uint32_t index, uint32_t slot, Scratch& s, TileResult& out) const {
@@ -211,20 +203,18 @@ private:
                 if (is_shell_only) {
                     HeldSurface held(surface);
                     cover_triangle<false>(a, b, c, window, analysis.inverted, held);
-                } else if (part.rule == Rule::half && !has_caps) {
-                    CrossingsAlone crossings(surface);
-                    if (counts) {
-                        find_centres<true>(a, b, c, window, crossings);
-                        wanted.pieces = by_vectors && fits_pieces(a, b, c, window.top);
-                        if (!wanted.pieces)
-                            add_pieces(a, b, c, window, surface);
-                    }
-                } else if (counts && !has_caps) {
-                    find_centres<true>(a, b, c, window, surface);
                 } else {
-                    find_centres<false>(a, b, c, window, surface);
-                    if (counts)
+                    const bool by_volume = part.rule == Rule::half && !has_caps;
+                    const bool crosses = counts && !has_caps;
+                    if (by_vectors && !is_upright(a, b, c))
+                        wanted = {crosses, true, !by_volume};
+                    else if (crosses || !by_volume)
+                        find_centres(a, b, c, window, crosses, !by_volume, surface);
+                    if (counts && has_caps)
                         cross_triangle(a, b, c, window, surface);
+                    wanted.pieces = counts && by_volume && by_vectors && fits_pieces(a, b, c, window.top, piece_limit_);
+                    if (counts && by_volume && !wanted.pieces)
+                        add_pieces(a, b, c, window, surface);
                 }
             }
             if (by_vectors) {
@@ -260,6 +250,7 @@ private:
     }
 
     CoverByVectors cover_by_vectors_;
+    double piece_limit_;
 };
 
 } // namespace voxrt::voxelize

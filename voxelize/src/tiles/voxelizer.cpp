@@ -129,7 +129,7 @@ struct BlockVoxelizer::State {
                                     bool volumes = false) {
         lap();
         std::vector<TileResult> found(tiles.size());
-        const TileWorker worker(parts, bins, side, engine);
+        const TileWorker worker(parts, bins, side, engine, volumes);
         workers.run(tiles.size(), [&](size_t job, int thread) {
             if (!scratch[size_t(thread)])
                 scratch[size_t(thread)] = std::make_unique<Scratch>(side, objects, parts.size(), has_rule);
@@ -182,11 +182,10 @@ struct BlockVoxelizer::State {
         RuleFindings findings;
         auto take_findings = [&](std::vector<TileResult>& from) {
             for (TileResult& tile : from) {
-                findings.bricks.insert(findings.bricks.end(), tile.rule_bricks.begin(), tile.rule_bricks.end());
+                findings.bricks.push_back(std::move(tile.rule_bricks));
                 findings.owned.insert(findings.owned.end(), tile.owned.begin(), tile.owned.end());
                 findings.mixed.insert(findings.mixed.end(), tile.mixed.begin(), tile.mixed.end());
                 tile.mixed = {};
-                tile.rule_bricks = {};
                 tile.owned = {};
             }
         };
@@ -339,17 +338,32 @@ ObjectVolumes BlockVoxelizer::volumes() {
     std::vector<TileResult> tiles = s.results(s.occupied({0, 0, s.side}), tallies, true);
     std::vector<size_t> ends(s.objects + 1); // of the object before, then of each
     for (const TileResult& tile : tiles)
-        for (const VoxelVolume& v : tile.volumes)
-            ends[v.object + 1] += out.known[v.object];
+        for (const VolumeBrick& brick : tile.volumes.bricks)
+            ends[brick.object + 1] += out.known[brick.object] ? size_t(count(brick.voxels)) : 0;
     for (size_t object = 0; object < s.objects; ++object) {
         out.whole.push_back(tallies[object].voxels - int64_t(ends[object + 1]));
         ends[object + 1] += ends[object];
     }
+    out.objects.resize(ends.back());
     out.voxels.resize(ends.back());
+    out.volumes.resize(ends.back());
     for (TileResult& tile : tiles) {
-        for (const VoxelVolume& v : tile.volumes)
-            if (out.known[v.object])
-                out.voxels[ends[v.object]++] = v;
+        const double* value = tile.volumes.values.data();
+        for (const VolumeBrick& brick : tile.volumes.bricks) {
+            const auto corner = [&brick](int axis) { return int32_t(gather_bits(brick.code >> axis)) * kBrickSide; };
+            const std::array<int32_t, 3> at{corner(0), corner(1), corner(2)};
+            size_t to = ends[brick.object];
+            for (int z = 0; z < kBrickSide; ++z)
+                for (uint64_t left = brick.voxels[size_t(z)]; left != 0; left &= left - 1, ++value) {
+                    if (!out.known[brick.object])
+                        continue;
+                    const int bit = std::countr_zero(left);
+                    out.objects[to] = brick.object;
+                    out.voxels[to] = {at[0] + column_x(bit), at[1] + column_y(bit), at[2] + z};
+                    out.volumes[to++] = *value;
+                }
+            ends[brick.object] = to;
+        }
         tile.volumes = {};
     }
     return out;

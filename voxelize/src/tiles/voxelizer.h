@@ -31,12 +31,12 @@
 
 #include "../grid/sparse_voxels.h"
 #include "../rules/rule.h"
-#include "../rules/voxel_volume.h"
 #include "../scene/object_mode.h"
 #include "../scene/parts.h"
 #include "../work/interrupt.h"
 #include "../work/large_vector.h"
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <string>
@@ -56,9 +56,11 @@ SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t obje
 
 /// Which part of each voxel with surface an object fills, whatever other objects there are.
 struct ObjectVolumes {
-    LargeVector<VoxelVolume> voxels; // by object
-    std::vector<int64_t> whole;      // by object: voxels that it fills and that have no surface of it
-    std::vector<uint8_t> known;      // by object: 0 where it has surfaces with openings, balls or ellipsoids
+    LargeVector<uint32_t> objects;              // by voxel, ascending
+    LargeVector<std::array<int32_t, 3>> voxels; // (x, y, z)
+    LargeVector<double> volumes;                // 0 … 1
+    LargeVector<int64_t> whole;                 // by object: voxels that it fills and that have no surface of it
+    LargeVector<uint8_t> known;                 // by object: 0 where it has surfaces with openings, balls or ellipsoids
 };
 
 /// Finds the volumes of objects. Arguments and errors are those of voxelize(); the rules and fills of parts do not

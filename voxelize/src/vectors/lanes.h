@@ -167,6 +167,14 @@ inline Lanes choose(Mask mask, const Lanes& yes, const Lanes& no) {
 inline Lanes if_less(const Lanes& a, const Lanes& b, const Lanes& yes, const Lanes& no) {
     return each([&](int i) { return if_less(a.part[i], b.part[i], yes.part[i], no.part[i]); });
 }
+inline Lanes load_ints(const int32_t* from) {
+    return each([&](int i) {
+        typedef int32_t IntPart __attribute__((vector_size(kPartLanes * sizeof(int32_t))));
+        IntPart part;
+        std::memcpy(&part, from + i * kPartLanes, sizeof part);
+        return __builtin_convertvector(part, Part);
+    });
+}
 // Rounds toward zero; values must fit.
 inline void store_as_int(int32_t* out, const Lanes& a) {
 #if defined(__AVX2__) && !defined(__AVX512F__)

@@ -56,10 +56,8 @@ void new_search_in(BeamSearch* place, const Cameras& cameras, double clock_hz, i
     new (place) BeamSearch(list, clock_hz, buffer_lines);
 }
 
-nb::object band_of(const BeamSearch& search) {
-    if (search.ended())
-        throw std::invalid_argument("the search has ended");
-    const BeamSearch::Band band = search.band();
+nb::object band_of(const BeamSearch& search, int ahead) {
+    const BeamSearch::Band band = search.band(ahead);
     std::vector<int32_t> all;
     append(all, band.camera);
     return band_type(to_numpy(std::move(all), {4, 3}), band.width, band.rows);
@@ -84,7 +82,9 @@ void bind_views(nb::module_& m) {
         .def_prop_ro("ended", &BeamSearch::ended)
         .def_prop_ro("done", &BeamSearch::done, "Pictures that are complete.")
         .def_prop_ro("total", &BeamSearch::total, "Pictures, at most.")
-        .def("band", &band_of, "The band whose cycles are wanted next. ValueError: the search has ended.")
+        .def_prop_ro("left", &BeamSearch::left, "Bands of the present picture whose cycles are wanted.")
+        .def("band", &band_of, nb::arg("ahead") = 0,
+             "The band whose cycles are wanted next, or one after it. ValueError: there is none.")
         .def("give", &BeamSearch::give, nb::arg("cycles"), "Take the cycles of that band.")
         .def("fit", &fit_of, "Scale, cycles per pixel, lead and frames per second: BeamFit of beam.h.");
 }

@@ -12,9 +12,10 @@ namespace {
 
 constexpr double kPixelHz = 25e6;
 constexpr int kLinePixels = 800, kLines = 525; // with the blanking
-constexpr int kLargestScale = 2;
+constexpr int kFirstScale = 1, kLargestScale = 2;
+constexpr int kEstimateScale = 3; // of pictures that choose views: one pixel for 4 x 4 of the first scale
 constexpr int kBands = 12;
-constexpr size_t kViews = 8;
+constexpr size_t kViews = 8, kSlowest = 2;
 constexpr double kSafety = 1.05; // for what lies between the views
 
 } // namespace
@@ -39,15 +40,22 @@ BeamSearch::BeamSearch(const std::vector<Camera>& cameras, double clock_hz, int 
     if (cameras.empty() || !(clock_hz > 0) || buffer_lines < 1)
         throw std::invalid_argument("a search needs a camera, a clock above 0 Hz, and a line or more");
     const size_t count = std::min(kViews, cameras.size());
-    for (size_t i = 0; i < count; ++i)
+    for (size_t i = 0; i < count; ++i) {
         views_.push_back(cameras[i * cameras.size() / kViews]);
+        order_.push_back(i);
+    }
+    slowest_ = std::min(kSlowest, count);
+    if (count > kSlowest)
+        scale_ = kEstimateScale;
 }
 
-BeamSearch::Band BeamSearch::band() const {
+BeamSearch::Band BeamSearch::band(int ahead) const {
+    if (ended_ || ahead < 0 || ahead >= left())
+        throw std::invalid_argument("the picture has no such band");
     const int32_t width = kScreenWidth >> scale_, height = kScreenHeight >> scale_, rows = height / kBands;
-    Camera camera = refit(views_[view_], {kScreenWidth, kScreenHeight}, {width, height});
+    Camera camera = refit(views_[order_[view_]], {kScreenWidth, kScreenHeight}, {width, height});
     // direction = look + right (column - W / 2) + up (H / 2 - row): a band is a picture with another look.
-    const int32_t shift = height / 2 - band_ * rows - rows / 2;
+    const int32_t shift = height / 2 - (band_ + ahead) * rows - rows / 2;
     for (int axis = 0; axis < 3; ++axis)
         camera.look[axis] += shift * camera.up[axis];
     // refit finds the largest registers that hold this look. They are rounded anew: some directions move by 1 %.
@@ -58,16 +66,29 @@ void BeamSearch::give(double cycles) {
     if (ended_)
         throw std::logic_error("the search has ended");
     const int32_t rows = (kScreenHeight >> scale_) / kBands;
-    rows_.insert(rows_.end(), static_cast<size_t>(rows), cycles / rows);
+    const int32_t part = scale_ == kEstimateScale ? 1 << (kEstimateScale - kFirstScale) : 1;
+    rows_.insert(rows_.end(), static_cast<size_t>(part * rows), part * cycles / rows);
     if (++band_ < kBands)
         return;
-    const double lead = beam_lead(rows_, line_, scale_, buffer_lines_);
-    finish({scale_, std::exchange(rows_, {}), lead});
+    band_ = 0;
+    ++done_;
+    const int scale = scale_ == kEstimateScale ? kFirstScale : scale_;
+    const double lead = beam_lead(rows_, line_, scale, buffer_lines_);
+    finish({scale, std::exchange(rows_, {}), lead});
 }
 
 void BeamSearch::finish(Picture picture) {
-    band_ = 0;
-    if (++measured_ > views_.size()) {
+    if (scale_ == kEstimateScale) {
+        estimates_.push_back(picture.lead);
+        if (++view_ < views_.size())
+            return;
+        std::stable_sort(order_.begin(), order_.end(),
+                         [&](size_t a, size_t b) { return estimates_[a] < estimates_[b]; });
+        scale_ = kFirstScale;
+        view_ = 0;
+        return;
+    }
+    if (scale_ != kFirstScale) {
         if (scale_ == kLargestScale || picture.lead >= 0)
             chosen_ = std::move(picture);
         ended_ = true;
@@ -75,25 +96,24 @@ void BeamSearch::finish(Picture picture) {
     }
     if (view_ == 0 || picture.lead < chosen_.lead) {
         chosen_ = std::move(picture);
-        slowest_ = view_;
+        chosen_view_ = view_;
     }
-    if (++view_ < views_.size())
+    if (++view_ < slowest_)
         return;
-    if (chosen_.lead < 0)
-        return try_scale(kLargestScale, slowest_);
+    view_ = chosen_view_;
     // Pictures of twice the side take nearly twice as long per row, and rows have half the time.
     std::vector<double> estimate;
     for (const double row : chosen_.rows)
         estimate.insert(estimate.end(), 2, 2 * row);
-    if (beam_lead(estimate, line_, 0, buffer_lines_) >= 0)
-        return try_scale(0, slowest_);
-    ended_ = true;
+    if (chosen_.lead < 0)
+        scale_ = kLargestScale;
+    else if (beam_lead(estimate, line_, 0, buffer_lines_) >= 0)
+        scale_ = 0;
+    else
+        ended_ = true;
 }
 
-void BeamSearch::try_scale(int scale, size_t view) {
-    scale_ = scale;
-    view_ = view;
-}
+int BeamSearch::left() const { return kBands - band_; }
 
 BeamFit BeamSearch::fit() const {
     double cycles = 0;

@@ -32,7 +32,8 @@ struct BeamFit {
     double frames_per_second; // in the view that takes longest
 };
 
-/// The largest pictures that a board traces in time, of eight views of an orbit.
+/// The largest pictures that a board traces in time, of eight views of an orbit. Small pictures of all choose the two
+/// that take longest.
 class BeamSearch {
 public:
     /// `cameras`: those of the orbit, for pictures of 640 x 480; one or more. `clock_hz`: the clock of the ray tracer.
@@ -46,14 +47,16 @@ public:
     };
 
     bool ended() const { return ended_; }
-    /// The band whose cycles are wanted next.
-    Band band() const;
-    /// Takes the cycles of that band.
+    /// Bands of the present picture whose cycles are wanted.
+    int left() const;
+    /// The band whose cycles are wanted next, or one of those after it.
+    Band band(int ahead = 0) const;
+    /// Takes the cycles of the next band.
     void give(double cycles);
 
     /// How many pictures are complete, of how many at most.
-    size_t done() const { return ended_ ? total() : measured_; }
-    size_t total() const { return views_.size() + 1; }
+    size_t done() const { return ended_ ? total() : done_; }
+    size_t total() const { return (views_.size() > slowest_ ? views_.size() : 0) + slowest_ + 1; }
 
     /// What was found; call it after the end.
     BeamFit fit() const;
@@ -66,14 +69,16 @@ private:
     };
 
     void finish(Picture picture);
-    void try_scale(int scale, size_t view);
 
     std::vector<Camera> views_;
     double line_; // cycles of a line of the screen
     int buffer_lines_;
-    size_t measured_ = 0;
+    size_t slowest_;                // views that are measured
+    std::vector<double> estimates_; // leads of all views
+    std::vector<size_t> order_;     // of the views
+    size_t done_ = 0;
     bool ended_ = false;
-    size_t view_ = 0, slowest_ = 0;
+    size_t view_ = 0, chosen_view_ = 0; // places in the order
     int scale_ = 1, band_ = 0;
     std::vector<double> rows_;
     Picture chosen_{};

@@ -3,17 +3,18 @@
 import { $, svgElement } from "./elements.js";
 import { projection } from "./projection.js";
 import { add } from "./vectors.js";
-/** @import { BandFrame } from "./band_picture.js" @import { Vector } from "./vectors.js" */
-/** @import { Picked } from "./voxrt/world.js" */
+/** @import { Registers } from "./camera.js" @import { Vector } from "./vectors.js" */
+
+/** A voxel, and the empty one at its face. @typedef {{ voxel: number[], beside: number[] | null }} Picked */
 
 const NEAR = 0.05; // voxels
 const POINTS = 32; // of a round brush
 
 /** Show a frame for what was picked; none for null. @param {Picked | null} picked @param {number} size voxels across
- * @param {BandFrame | null} frame the picture */
+ * @param {{ width: number, height: number, camera: Registers } | null} frame the picture */
 export function showAim(picked, size, frame) {
   const svg = document.getElementById("aim") ?? svgElement("svg", { id: "aim", "aria-hidden": "true" });
-  if (!svg.isConnected) $("octants").after(svg);
+  if (!svg.isConnected) (document.getElementById("octants") ?? $("picture")).after(svg);
   svg.replaceChildren();
   if (!picked?.beside || !frame) return;
   svg.setAttribute("viewBox", `0 0 ${frame.width} ${frame.height}`);

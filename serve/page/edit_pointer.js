@@ -5,7 +5,9 @@
 
 import { $ } from "./elements.js";
 import { capture } from "./gestures.js";
-/** @import { Gestures } from "./gestures.js" @import { Edited, Tool } from "./edit_worker.js" */
+/** @import { Gestures } from "./gestures.js" */
+
+/** @typedef {"dig" | "build" | "paint"} Tool */
 
 const FIRST = 320; // milliseconds until a held button repeats
 const AGAIN = 120; // milliseconds between repeats
@@ -16,7 +18,7 @@ const NOTCH = 50; // pixels of the wheel per material
 /** @typedef {{ x: number, y: number }} Place of the page */
 
 /** What the pointer does; `tool`: for a button, null for none. @typedef {{ tool: (button: number) => Tool | null, use:
- * (tool: Tool, place: Place, stroke: number) => Promise<Edited | null>, aim: (place: Place | null) => void, take:
+ * (tool: Tool, place: Place, stroke: number) => Promise<{ hit: boolean } | null>, aim: (place: Place | null) => void, take:
  * (place: Place) => void, nextMaterial: (step: number) => void, locked: () => boolean }} PointerActions */
 
 /** @typedef {Place & { id: number, event: PointerEvent, tool: Tool, stroke: number, acts: number, last: Place }} Held */

@@ -1,8 +1,12 @@
 // The controls of editing over the picture: tools, brush, materials, undo and redo, figures.
 
 import { $, all, element, makeToolbar, pressed } from "./elements.js";
-/** @import { EditFigures } from "./editor.js" @import { Tool } from "./edit_worker.js" */
-/** @import { Material } from "./voxrt/voxrt.js" */
+/** @import { Tool } from "./edit_pointer.js" */
+
+/** `blocks` of the octree; `fresh`: blocks that the newest edits have made, or brought back; `freed`: blocks that voxels no
+ * longer need; steps that there are. @typedef {{ blocks: number, fresh: number, freed: number, undo: number, redo: number }}
+ * EditFigures */
+/** `colour`: red, green, blue. @typedef {{ name: string, colour: readonly number[] }} Material */
 
 /** @typedef {Tool | "look"} ToolChoice */
 /** @typedef {{ tool: ToolChoice, size: number, material: number }} Choice */
