@@ -10,8 +10,6 @@
 namespace voxrt::voxelize {
 namespace {
 
-constexpr double kSeams = 1e-6; // the share of a surface's area that openings have which close but for rounding
-
 /// Points in a lattice of their own, so fine that those of a float32 file stay apart.
 std::vector<Vertex> in_lattice(const std::vector<Point>& points, const Point& low, const Point& high) {
     const double scale = double(kCoordinateLimit) / std::max({high.x - low.x, high.y - low.y, high.z - low.z, 1e-300});
@@ -207,7 +205,7 @@ void analyze_part(MeshAnalysis& analysis, const PartView& part, const TriangleSu
     }
     analysis.closed = found.closed;
     // What closes but for the seams of T-junctions has a volume as well.
-    const bool is_tight = found.hole_caps && found.hole_caps->shell_only.empty() && found.hole_caps->opening < kSeams;
+    const bool is_tight = found.hole_caps && found.hole_caps->are_seams();
     analysis.inverted = (found.closed || is_tight) && found.volume6 < 0;
     if (found.closed && found.orientation && found.orientation->components > 0)
         analysis.inverted = shared != nullptr && determinant(part.frame) < 0;

@@ -21,7 +21,7 @@ std::string listed(const std::vector<std::string>& names) {
 
 std::vector<ObjectWarning> object_warnings(const VoxelizedObjects& objects) {
     std::vector<std::string> without, mostly_filled;
-    int64_t open = 0, flipped = 0, turned = 0, one_sided = 0;
+    int64_t open = 0, flipped = 0, turned = 0, one_sided = 0, inward = 0;
     for (size_t i = 0; i < objects.names.size(); ++i) {
         if (objects.reported[i] && objects.voxels[i] == 0)
             without.push_back(objects.names[i]);
@@ -30,6 +30,7 @@ std::vector<ObjectWarning> object_warnings(const VoxelizedObjects& objects) {
         flipped += notes[kFlippedComponents];
         turned += notes[kTurnedFaces];
         one_sided += notes[kOneSidedPieces];
+        inward += objects.reported[i] && notes[kInwardParts] != 0;
         if (notes[kMostlyFilled] != 0)
             mostly_filled.push_back(objects.names[i]);
     }
@@ -61,6 +62,12 @@ std::vector<ObjectWarning> object_warnings(const VoxelizedObjects& objects) {
                             "faces were wound against those beside them and were turned, so that what the surface "
                             "encloses is solid: recalculate the normals",
                             turned});
+    if (inward > 0)
+        warnings.push_back(
+            {"inward-parts",
+             "objects have parts that face inwards and touch or cross others, and were not turned: such "
+             "parts may be a voxel too large, and hollow where they cross others; recalculate the normals",
+             inward});
     if (one_sided > 0)
         warnings.push_back({"one-sided",
                             "pieces have one side only, like a Klein bottle, so nothing tells their inside for sure: "
