@@ -27,7 +27,7 @@ struct Claim {
     int64_t shell = 0;                       // voxels of the shell, whoever has them
     int64_t inside = 0;                      // voxels that the shell encloses, whoever has them
     bool simple = true;                      // all winding numbers were 0 and 1, or 0 and -1
-    bool positive = false, negative = false; // whether some winding number was
+    bool positive = false, negative = false; // whether some winding number was, of a surface without caps
 
     void add(const ColumnWinding& winding) {
         positive = positive || winding.was_positive();
@@ -263,7 +263,6 @@ private:
             }
             claim_brick(tile, object, column, k, brick, within, interior, result);
         }
-        result.add(winding);
     }
 
     static void intersect(Slices& within, const Slices& box) {
