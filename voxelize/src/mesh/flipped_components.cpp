@@ -91,7 +91,7 @@ public:
             }
             component_of_[t] = component;
             Component& own = components_[component];
-            own.capped = own.capped || t >= mesh_.triangle_count();
+            own.capped = own.capped || (t >= mesh_.triangle_count() && !caps_->are_seams());
             for (const uint32_t v : c) {
                 own.box.add(vertices_[v]);
                 if (seen[v] == kNoComponent)

@@ -107,11 +107,17 @@ Enclosed find_enclosed(const MeshView& mesh, const TriangleSums& sums, double bo
     const auto close_and_flip = [&] {
         if (!found.closed && !fills(fill))
             return false;
-        if (!found.closed)
+        const auto cap_holes = [&] {
             found.hole_caps =
                 std::make_shared<const HoleCaps>(find_hole_caps(*edges, found.orientation.get(), points(), fill));
+        };
+        if (!found.closed)
+            cap_holes();
         FlippedComponents flipped = flip_components(mesh, vertices, found.orientation, found.hole_caps.get());
+        const bool are_flipped = flipped.orientation != found.orientation;
         found.orientation = std::move(flipped.orientation);
+        if (are_flipped && !found.closed)
+            cap_holes();
         return flipped.has_flat;
     };
     const bool flat = found.closed && std::abs(sums.volume6) < 1e-6 * box;
@@ -207,7 +213,7 @@ void analyze_part(MeshAnalysis& analysis, const PartView& part, const TriangleSu
     // What closes but for the seams of T-junctions has a volume as well.
     const bool is_tight = found.hole_caps && found.hole_caps->are_seams();
     analysis.inverted = (found.closed || is_tight) && found.volume6 < 0;
-    if (found.closed && found.orientation && found.orientation->components > 0)
+    if ((found.closed || is_tight) && found.orientation && found.orientation->components > 0)
         analysis.inverted = shared != nullptr && determinant(part.frame) < 0;
     analysis.hole_caps = found.hole_caps;
     analysis.orientation = found.orientation;

@@ -42,14 +42,14 @@ std::vector<ObjectWarning> object_warnings(const VoxelizedObjects& objects) {
         warnings.push_back(
             {"open-surface",
              "open objects, like a room without a front, were not filled: close them, give them colliders, or fill "
-             "objects that close one another together",
+             "those that close one another as one by --fill together",
              open});
     if (!mostly_filled.empty()) {
         const size_t others = mostly_filled.size() - 1;
         const std::string more = others > 0 ? " and " + std::to_string(others) + " more" : "";
         warnings.push_back({"mostly-filled",
                             "open objects were filled, and are more inside than shell (" + mostly_filled[0] + more +
-                                "): build thin sheets, such as cloth, with fill surface",
+                                "): build thin sheets, such as cloth, with --fill surface",
                             int64_t(mostly_filled.size())});
     }
     if (flipped > 0)
@@ -71,7 +71,7 @@ std::vector<ObjectWarning> object_warnings(const VoxelizedObjects& objects) {
     if (one_sided > 0)
         warnings.push_back({"one-sided",
                             "pieces have one side only, like a Klein bottle, so nothing tells their inside for sure: "
-                            "look at the picture, or build them with fill surface",
+                            "look at the picture, or build them with --fill surface",
                             one_sided});
     return warnings;
 }
