@@ -35,6 +35,21 @@ def box(low, high, split="", edge=(8, 8)):
     return np.array(positions, float), np.array(triangles)
 
 
+def cut_box(low, high, rng):
+    """A box whose faces are cut into rectangles, each face for itself, so that their corners stand on its edges."""
+    corners, _ = box(low, high)
+    positions, triangles = [], []
+    for quad in QUADS.values():
+        a, b, _, d = (corners[vertex] for vertex in quad)
+        u, v = (np.array([0, *sorted(set(rng.random(2).round(1)) - {0.0, 1.0}), 1]) for _ in range(2))
+        for i, j in np.ndindex(len(u) - 1, len(v) - 1):
+            ends = ((u[i], v[j]), (u[i + 1], v[j]), (u[i + 1], v[j + 1]), (u[i], v[j + 1]))
+            start = len(positions)
+            positions += [a + s * (b - a) + t * (d - a) for s, t in ends]
+            triangles += [[start, start + 1, start + 2], [start, start + 2, start + 3]]
+    return np.array(positions), np.array(triangles)
+
+
 def turned(part):
     return part[0], part[1][:, ::-1]
 
@@ -88,3 +103,22 @@ def test_cavities_that_touch_the_wall_at_a_vertex_stay():
     voxels, warned = built(box([0, 0, 0], [16, 16, 16]), (corners, inwards))
     assert (0 < 16**3 - voxels < np.linalg.det(corners[1:] - corners[0]) / -6, warned) == (True, {})
     assert built(box([0, 0, 0], [16, 16, 16]), turned(box([2, 2, 2], [14, 14, 14]))) == (16**3 - 12**3, {})
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_boxes_with_seams_some_inside_out_are_solid(seed):
+    """What the voxels do not show right is named."""
+    rng = np.random.default_rng(seed)
+    taken = np.zeros((16, 16, 16), bool)
+    parts = []
+    for _ in range(6):
+        low = rng.integers(0, 12, 3)
+        high = np.minimum(low + rng.integers(2, 8, 3), 16)
+        place = tuple(slice(*ends) for ends in zip(low, high, strict=True))
+        if not taken[place].any():
+            taken[place] = True
+            part = cut_box(low.tolist(), high.tolist(), rng)
+            parts.append(turned(part) if rng.random() < 0.4 else part)
+    voxels, warned = built(*parts)
+    assert voxels == taken.sum() or warned
+    assert set(warned) <= {"turned-pieces", "turned-faces", "inward-parts"}

@@ -93,10 +93,11 @@ Enclosed find_enclosed(const MeshView& mesh, const TriangleSums& sums, double bo
                        const std::vector<Vertex>& vertices, const std::function<std::vector<Point>()>& points,
                        Fill fill) {
     Enclosed found{sums.boundary == 0, sums.volume6, nullptr, nullptr};
-    std::optional<MeshEdges> edges;
+    std::optional<MeshEdges> edges, cut;
     const auto orient = [&](bool flat) {
         edges.emplace(mesh, weld(keys));
-        const std::optional<MeshEdges> cut = cut_edges(*edges, vertices);
+        if (std::optional<MeshEdges> found_cut = cut_edges(*edges, vertices))
+            cut.emplace(std::move(*found_cut));
         found.orientation = find_orientation(*edges, cut ? *cut : *edges, vertices, flat);
         if (found.orientation) {
             found.closed = closes(*edges, *found.orientation);
@@ -113,10 +114,13 @@ Enclosed find_enclosed(const MeshView& mesh, const TriangleSums& sums, double bo
         };
         if (!found.closed)
             cap_holes();
-        FlippedComponents flipped = flip_components(mesh, vertices, found.orientation, found.hole_caps.get());
+        FlippedComponents flipped = flip_components(mesh, vertices, found.orientation, found.hole_caps.get(),
+                                                    cut     ? &*cut
+                                                    : edges ? &*edges
+                                                            : nullptr);
         const bool are_flipped = flipped.orientation != found.orientation;
         found.orientation = std::move(flipped.orientation);
-        if (are_flipped && !found.closed)
+        if (are_flipped && found.hole_caps && found.hole_caps->are_seams())
             cap_holes();
         return flipped.has_flat;
     };

@@ -42,6 +42,9 @@ public:
     /// Columns whose winding number is not zero.
     uint64_t inside() const { return inside_; }
 
+    /// Columns whose winding number is below zero.
+    uint64_t below_zero() const { return inside_ & planes_[kPlanes - 1]; }
+
     /// The winding number of one column.
     int at(int bit) const {
         uint32_t value = 0;

@@ -27,7 +27,7 @@ struct Claim {
     int64_t shell = 0;                       // voxels of the shell, whoever has them
     int64_t inside = 0;                      // voxels that the shell encloses, whoever has them
     bool simple = true;                      // all winding numbers were 0 and 1, or 0 and -1
-    bool positive = false, negative = false; // whether some winding number was, of a surface without caps
+    bool positive = false, negative = false; // whether some winding number was that caps do not change
 
     void add(const ColumnWinding& winding) {
         positive = positive || winding.was_positive();
@@ -245,6 +245,11 @@ private:
                 within[z] = kind == GeneralizedInside::Class::inside   ? ~uint64_t{0}
                             : kind == GeneralizedInside::Class::capped ? winding.inside()
                                                                        : 0;
+                if (kind == GeneralizedInside::Class::capped) {
+                    const uint64_t below = winding.below_zero();
+                    result.negative = result.negative || below != 0;
+                    result.positive = result.positive || winding.inside() != below;
+                }
                 for (int bit = 0; mixed && bit < 64; ++bit)
                     numbers_[z * 64 + bit] = winding.at(bit);
             }

@@ -150,7 +150,7 @@ private:
                                         : s.fill.claim_solid(s.tile, s.surface, interior);
         s.object_voxels[part.object] += claim.voxels;
         s.overlaps_itself[index] |= !claim.simple;
-        if (!has_holes && (analysis.closed || (analysis.hole_caps && analysis.hole_caps->are_seams()))) {
+        if (analysis.closed || (analysis.hole_caps && analysis.hole_caps->are_seams())) {
             s.positive[part.object] |= claim.positive;
             s.negative[part.object] |= claim.negative;
         }
