@@ -101,7 +101,7 @@ class Load:
         for number in range(attacks):
             await asyncio.sleep(max(0.0, began + 60 * minutes * (number + 1) / (attacks + 1) - time.monotonic()))
             self.attack, attack = kinds[number % len(kinds)]
-            async with asyncio.timeout(120):
+            async with asyncio.timeout(600):
                 await attack(target)
             self.counted[f"attacks: {self.attack}"] += 1
             self.attack = "none"

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import os
+import re
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
+
+
+_FILE = re.compile(r"\.\d?[A-Za-z]\w{0,4}")
+"""Suffixes by which a name means a file: .obj and .3mf, and not those of versions, as in v0.2."""
 
 
 class OutputError(Exception):
@@ -24,6 +29,18 @@ def check_folder(folder: Path) -> None:
         raise OutputError(f"{folder}: {nearest} is a file, not a folder; name another folder")
     if not os.access(nearest, os.W_OK | os.X_OK):
         raise OutputError(f"{folder}: no permission to write in {nearest}; name another folder")
+
+
+def check_output_folder(folder: Path, problem: str, fix: str) -> None:
+    """Do the same for the folder that an output is, and refuse to make one with the name of a file.
+
+    `problem` says what the suffix of such a name is, `fix` what to name in its place.
+    """
+    if _FILE.fullmatch(folder.suffix) and not folder.exists():
+        raise OutputError(
+            f"{folder}: {folder.suffix} is {problem}; {fix}; a folder with such a name must be there already"
+        )
+    check_folder(folder)
 
 
 def check_file(path: Path) -> None:

@@ -262,6 +262,8 @@ def _shaped(name: str, value: object, shape: Sequence[int | str], kind: str) -> 
         raise ValueError(f"{name} must be an array of {kind}: its rows differ in length") from None
     if found.dtype.kind not in "iuf":
         raise TypeError(f"{name} must be an array of {kind}, not of {_kind_of(value, found)}")
+    if found.shape == tuple(shape):
+        return found
     if found.shape == (0,) and isinstance(shape[0], str):
         found = found.reshape(0, *(side if isinstance(side, int) else 0 for side in shape[1:]))
     wrong = found.ndim != len(shape) or any(

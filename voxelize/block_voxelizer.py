@@ -25,6 +25,9 @@ if TYPE_CHECKING:
     from voxrt.voxelize.scene import Scene
     from voxrt.voxelize.voxels import Voxels
 
+TALLIES = 6
+"""The counts of an object that squares add up to: a row of tallies."""
+
 
 class ColumnBlock(NamedTuple):
     """A square of columns over the grid's whole height.
@@ -75,7 +78,7 @@ class BlockVoxelizer:
     (ColumnBlock(x=0, y=0, side=64), ColumnBlock(x=64, y=0, side=64))
     >>> voxels, tallies = voxelizer.voxelize(blocks[0])
     >>> tallies.shape
-    (5, 4)
+    (5, 6)
     """
 
     def __init__(
@@ -157,7 +160,7 @@ class BlockVoxelizer:
         voxels
             Its voxels.
         tallies
-            What it found of each object, for :meth:`report`: int64, shape (O, 4).
+            What it found of each object, for :meth:`report`: int64, shape (O, 6).
         """
         result = self._native.block(*block)
         return voxels_of(self._parts.grid.depth, result), result.object_tallies
@@ -222,7 +225,7 @@ def voxelize_in_blocks(
     voxelizer = BlockVoxelizer(
         scene, grid, fill=fill, rule=rule, thin=thin, geometry=geometry, pow2=pow2, threads=threads
     )
-    tallies = np.zeros((len(scene.objects), 4), np.int64)
+    tallies = np.zeros((len(scene.objects), TALLIES), np.int64)
     for block in voxelizer.blocks(block_side):
         voxels, found = voxelizer.voxelize(block)
         take(voxels)

@@ -79,7 +79,8 @@ class SceneObject:
         arguments.text("SceneObject.name", self.name)
         arguments.instance("SceneObject.mesh", self.mesh, Mesh)
         transform = arguments.real_array("SceneObject.transform", self.transform, (4, 4))
-        if np.abs(transform[3] - (0, 0, 0, 1)).max() > _AFFINE_TOLERANCE:
+        x, y, z, w = transform[3].tolist()
+        if max(abs(x), abs(y), abs(z), abs(w - 1)) > _AFFINE_TOLERANCE:
             raise ValueError(f"SceneObject.transform must be affine: its last row is {transform[3].tolist()}")
         colliders = tuple(self.colliders)
         for index, one in enumerate(colliders):

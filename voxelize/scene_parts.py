@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.box_rounding import Pow2
     from voxrt.voxelize.collider_shapes import Collider
     from voxrt.voxelize.errors import SceneWarning
+    from voxrt.voxelize.mesh import Mesh
     from voxrt.voxelize.object_proxies import Geometry
     from voxrt.voxelize.rules import ObjectFill, Rule, Thin
     from voxrt.voxelize.scene import SceneObject
@@ -61,6 +62,7 @@ class SceneParts:
         self._rows: list[tuple[int, int, int, int]] = []  # kind, mesh, material, object
         self._frames: list[NDArray[np.float64]] = []
         self._objects = 0
+        self._only_materials: dict[int, int] = {}  # an id is unique, for the scene keeps its meshes
         self.log = WarningLog()
         self._placements: list[ObjectPlacement] = []
         for item in scene.objects:
@@ -73,6 +75,14 @@ class SceneParts:
         frame[:, 3] -= self.grid.origin
         with np.errstate(over="ignore", invalid="ignore"):
             return np.asarray(frame * self._scale)
+
+    def only_material(self, mesh: Mesh) -> int:
+        """Return the material of all triangles of a mesh; 0 where there are several."""
+        if id(mesh) not in self._only_materials:
+            materials = np.flatnonzero(np.bincount(mesh.materials))
+            only = int(materials[0]) if len(materials) == 1 and mesh.material_map is None else 0
+            self._only_materials[id(mesh)] = only
+        return self._only_materials[id(mesh)]
 
     def add(self, kind: int, frame: NDArray[np.float64], material: int, mesh: int = -1) -> None:
         """Add a part of the last object: its kind, frame, material, and mesh if it has one."""
@@ -163,10 +173,8 @@ def _add_object(parts: SceneParts, item: SceneObject, geometry: Geometry, pow2: 
     if colliders is None:
         if item.points is not None and len(item.points.positions) and not len(mesh.triangles):
             raise ValueError(f"object {item.name!r} has points that are on no grid: call place_points first")
-        materials = np.flatnonzero(np.bincount(mesh.materials))
-        only = int(materials[0]) if len(materials) == 1 and mesh.material_map is None else 0
         arrays = (mesh.positions, mesh.triangles, mesh.materials)
-        parts.add_mesh(mesh, arrays, item.transform, only, mesh.material_map or _NO_MAP)
+        parts.add_mesh(mesh, arrays, item.transform, parts.only_material(mesh), mesh.material_map or _NO_MAP)
         return "mesh", _ZERO, _ZERO
     material = item.collider_material
     if not item.colliders and colliders:

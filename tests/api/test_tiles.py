@@ -114,9 +114,9 @@ def test_a_damaged_tile_is_made_anew(at_once, tmp_path):
 FORGERIES = {
     "an overlap": lambda tile: Tile(octree.Octree(DEPTH, np.full(1, 0xFFFFFF01, np.uint32)), tile.tallies),
     "another world": lambda tile: Tile(octree.Octree(DEPTH - 1, tile.octree.words), tile.tallies),
-    "an object too many": lambda tile: Tile(tile.octree, np.array([[7, 1, 0, 0, 1]])),
-    "no object": lambda tile: Tile(tile.octree, np.array([[-1, 1, 0, 0, 1]])),
-    "negative counts": lambda tile: Tile(tile.octree, np.array([[0, -1, 0, 0, 1]])),
+    "an object too many": lambda tile: Tile(tile.octree, np.array([[7, 1, 0, 0, 1, 1, 0]])),
+    "no object": lambda tile: Tile(tile.octree, np.array([[-1, 1, 0, 0, 1, 1, 0]])),
+    "negative counts": lambda tile: Tile(tile.octree, np.array([[0, -1, 0, 0, 1, 1, 0]])),
 }
 
 
@@ -232,14 +232,14 @@ def test_tiles_are_used_whatever_is_free_now(tmp_path):
 
 def test_a_tile_is_read_as_it_was_written_and_never_else(tmp_path):
     tree = octree.from_points([[1, 2, 3]], [7], depth=2)
-    tile = Tile(tree, np.array([[0, 1, 0, 0, 1]]))
+    tile = Tile(tree, np.array([[0, 1, 0, 0, 1, 1, 0]]))
     path, key = tmp_path / "one.tile", "ab" * 16
     size = write_tile(path, key, tile)
     assert path.stat().st_size == size
     again = read_tile(path, key)
     assert again is not None
     assert (again.octree.depth, bytes(again.octree.words)) == (2, bytes(tree.words))
-    assert again.tallies.tolist() == [[0, 1, 0, 0, 1]]
+    assert again.tallies.tolist() == [[0, 1, 0, 0, 1, 1, 0]]
     assert read_tile(path, "cd" * 16) is None
     assert read_tile(tmp_path / "none.tile", key) is None
     for length in (0, 10, size - 1):

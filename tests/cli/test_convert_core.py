@@ -109,7 +109,7 @@ int main(void) {
 
 def test_errors_are_one_line_and_write_nothing(voxrt, built):
     for arguments, message in (
-        (("house.mem", "out.mem", "--form", "core"), "--form core writes several files; name a folder"),
+        (("house.mem", "out.mem", "--form", "core"), "--form core writes several; name a folder"),
         (("house.mem", "out", "--form", "core", "--config", "pico"), "no such configuration; name one of tiny"),
         (("house.mem", "out.coe", "--config", "tiny"), "--config and --size are of --form core"),
         (("house.mem", "house.obj/out", "--form", "core"), "is a file, not a folder"),

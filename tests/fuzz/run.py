@@ -29,10 +29,15 @@ with atheris.instrument_imports(include=["voxrt"]):
     import voxrt.voxelize.authoring.scene_toml
 
     # Those that load() would import after instrumenting is over.
+    import voxrt.voxelize.formats.dae.load
     import voxrt.voxelize.formats.gltf
     import voxrt.voxelize.formats.obj
+    import voxrt.voxelize.formats.off
     import voxrt.voxelize.formats.ply
-    import voxrt.voxelize.formats.stl.load  # noqa: F401
+    import voxrt.voxelize.formats.points
+    import voxrt.voxelize.formats.stl.load
+    import voxrt.voxelize.formats.threemf.load
+    import voxrt.voxelize.formats.vox.scene  # noqa: F401
 
 _MEMORY = 3 << 30
 _LARGEST_SEED = 16 << 10

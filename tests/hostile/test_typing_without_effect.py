@@ -44,7 +44,7 @@ def test_a_command_that_is_none(voxrt):
     voxrt.fails(2, "there is no command 'rendr'; did you mean render; name one of build, render, ", "rendr")
 
 
-@pytest.mark.parametrize("name", ["a.exe", "a.obj", "a.blob"])
+@pytest.mark.parametrize("name", ["a.exe", "a.obj", "a.blob", "a.3mf"])
 def test_an_output_that_is_no_folder_and_no_memory(voxrt, folder, name):
     voxrt.fails(2, "is no format of memories; name a file with one of .mem", "build", "house.obj", "-o", name)
     assert not (folder / name).exists()

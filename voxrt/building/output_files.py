@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import os
-import re
 from dataclasses import dataclass
 from pathlib import Path
 
 from voxrt.export import WORD_SUFFIXES
-from voxrt.export.outputs import OutputError, check_file, check_folder
+from voxrt.export.outputs import OutputError, check_file, check_folder, check_output_folder
 from voxrt.octree import RomError
 from voxrt.voxelize.formats.external_files import as_text
-
-_FILE = re.compile(r"\.[A-Za-z]\w{0,4}")
-"""Suffixes by which a name means a file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,13 +43,11 @@ def output_files(
         named = path.suffix.lower() in WORD_SUFFIXES and not path.is_dir()
         if named:
             name = as_text(path.stem)
-        elif _FILE.fullmatch(path.suffix) and not path.exists():
-            raise OutputError(
-                f"{path}: {path.suffix} is no format of memories; name a file with one of {', '.join(WORD_SUFFIXES)}, "
-                "or a folder; one with such a name must be there already"
-            )
+            check_folder(path.parent)
+        else:
+            fix = f"name a file with one of {', '.join(WORD_SUFFIXES)}, or a folder"
+            check_output_folder(path, "no format of memories", fix)
         words = path if named else path / f"{name}.mem"
-        check_folder(words.parent)
     picture = None
     if preview:
         folder = Path() if words is None else words.parent

@@ -11,6 +11,7 @@ from voxrt import octree, voxelize
 from voxrt.plans.tile_store import MemoryTiles, sum_tallies, tile_name
 from voxrt.plans.tile_tasks import block_voxelizer, finish_tile, tiles_key
 from voxrt.voxelize import VoxelizationReport
+from voxrt.voxelize.block_voxelizer import TALLIES
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -78,7 +79,7 @@ def _run_in_tiles(
     with clock.stage("voxelize"):
         voxelizer = block_voxelizer(scene, plan.grid, options)
         blocks = voxelizer.blocks(tiles.claim(tiles_key(voxelizer), plan.side))
-    tallies = np.zeros((len(scene.objects), 4), np.int64)
+    tallies = np.zeros((len(scene.objects), TALLIES), np.int64)
     for block in blocks:
         tile = finish_tile(voxelizer, block, clock, tiles, options.threads)
         tallies += sum_tallies(tile.tallies, len(tallies))

@@ -21,6 +21,7 @@ from voxrt.export.atomic import write_atomically
 from voxrt.export.outputs import OutputError
 from voxrt.octree import Assembly, DiskAssembly, Octree
 from voxrt.voxelize import AssetError, DoesNotFitError
+from voxrt.voxelize.block_voxelizer import TALLIES
 
 try:
     import fcntl
@@ -41,7 +42,7 @@ _MAGIC = b"voxrtil2"
 _CRC32 = struct.Struct("<I")
 _KEY = re.compile(rb"(?P<key>[0-9a-f]{32}) (?P<side>[0-9]{1,6})\n")
 _TEMPORARY = re.compile(r"\.(?:key|[0-9]+-[0-9]+\.tile)\.[0-9a-f]{8}\.tmp")  # as write_atomically names them
-_TALLIES = 5  # numbers per row: the object, and its tally
+_TALLIES = 1 + TALLIES  # numbers per row: the object, and its tally
 _BYTES_OF_BLOCK = 32
 _FORGED = "a finished tile is not what its build writes; remove the folder of the tiles, NAME.tiles, and build again"
 
@@ -51,7 +52,7 @@ class Tile:
     """A finished tile, or several that were joined.
 
     The octree is of the whole world, empty outside of the tile. The tallies are of the objects that it reaches: int64,
-    shape (N, 5), the number of an object and its row of :meth:`voxrt.voxelize.BlockVoxelizer.voxelize`.
+    shape (N, 7), the number of an object and its row of :meth:`voxrt.voxelize.BlockVoxelizer.voxelize`.
     """
 
     octree: Octree
@@ -59,30 +60,30 @@ class Tile:
 
 
 def sparse_tallies(tallies: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return the rows of objects with a tally: from shape (O, 4) to (N, 5).
+    """Return the rows of objects with a tally: from shape (O, 6) to (N, 7).
 
     Examples
     --------
-    >>> sparse_tallies(np.array([[0, 0, 0, 0], [7, 0, 0, 1]])).tolist()
-    [[1, 7, 0, 0, 1]]
+    >>> sparse_tallies(np.array([[0, 0, 0, 0, 0, 0], [7, 0, 0, 1, 1, 0]])).tolist()
+    [[1, 7, 0, 0, 1, 1, 0]]
     """
     rows = np.flatnonzero(tallies.any(axis=1))
     return np.column_stack([rows, tallies[rows]]).astype(np.int64)
 
 
 def sum_tallies(tallies: NDArray[np.int64], objects: int) -> NDArray[np.int64]:
-    """Return the sum of rows of tallies by object: from shape (N, 5) to (O, 4).
+    """Return the sum of rows of tallies by object: from shape (N, 7) to (O, 6).
 
     OutputError where an object is none of the scene's, or counts are negative: no build of the scene wrote the rows.
 
     Examples
     --------
-    >>> sum_tallies(np.array([[1, 7, 0, 0, 1], [1, 2, 0, 0, 1]]), 2).tolist()
-    [[0, 0, 0, 0], [9, 0, 0, 2]]
+    >>> sum_tallies(np.array([[1, 7, 0, 0, 1, 1, 0], [1, 2, 0, 0, 1, 1, 0]]), 2).tolist()
+    [[0, 0, 0, 0, 0, 0], [9, 0, 0, 2, 2, 0]]
     """
     if tallies.size and (tallies.min() < 0 or tallies[:, 0].max() >= objects):
         raise OutputError(_FORGED)
-    total = np.zeros((objects, 4), np.int64)
+    total = np.zeros((objects, _TALLIES - 1), np.int64)
     np.add.at(total, tallies[:, 0], tallies[:, 1:])
     return total
 

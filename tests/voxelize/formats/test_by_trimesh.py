@@ -130,6 +130,20 @@ def test_off_is_read_as_the_user_says(tmp_path):
     assert scene.objects[0].name == "a"
 
 
+@pytest.mark.parametrize(
+    ("header", "vertex", "face", "warned"),
+    [
+        ("OFF", "", "", {}),
+        ("COFF", " 255 0 0 255", "", {"vertex-colour": 1}),
+        ("OFF", "", " 9 9 9", {"vertex-colour": 1}),
+    ],
+)
+def test_colours_of_off_are_named(header, vertex, face, warned, tmp_path):
+    rows = "".join(f"{row}{vertex}\n" for row in ("0 0 0", "1 0 0", "0 1 0"))
+    (tmp_path / "a.off").write_text(f"{header}\n3 1 0\n{rows}3 0 1 2{face}\n")
+    assert kinds(load(tmp_path / "a.off")) == warned
+
+
 @pytest.mark.parametrize(("unit", "metres"), [("SI_UNIT(.MILLI.,.METRE.)", 1e-3), ("SI_UNIT($,.METRE.)", 1)])
 def test_step_is_read_in_metres_with_z_up(unit, metres, tmp_path):
     path = tmp_path / "a.step"
@@ -144,9 +158,10 @@ def test_step_is_read_in_metres_with_z_up(unit, metres, tmp_path):
     [
         ("a.off", b"", "trimesh cannot read it"),
         ("a.off", b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 9\n", "trimesh cannot read it"),
+        ("a.off", b"OFF\n3 1 0\n0,5 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "write 0.5"),
         ("a.3mf", b"PK\x03\x04", "is no 3MF package"),
         ("a.dae", b"<COLLADA>", "its XML is broken"),
-        ("a.dae", b"<COLLADA/>", "trimesh cannot read it"),
+        ("a.dae", b"<COLLADA/>", "has no triangles"),
         ("a.step", b"ISO-10303-21;", "OpenCASCADE cannot read it"),
         ("a.xyzzy", b"", "unknown kind of file '.xyzzy'; convert it"),
     ],

@@ -159,3 +159,23 @@ def test_what_is_not_there_is_refused(resources, build, message, tmp_path):
     with pytest.raises(AssetError, match=message) as refused:
         load(path)
     assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("space", "attribute"),
+    [
+        ("", 'paint_color="4"'),
+        ('xmlns:slic3rpe="http://schemas.slic3r.org/3mf/2017/06"', 'slic3rpe:mmu_segmentation="8"'),
+    ],
+)
+def test_what_slicers_paint_is_named(space, attribute, tmp_path):
+    """The colours of filaments stand in the settings of the slicer, beside the model."""
+    text = model(box(1, (1, 2, 3), faces=attribute), item(1)).replace("<model", f"<model {space}")
+    settings = '<config><object id="1"><metadata key="extruder" value="2"/></object></config>'
+    scene = load(write(tmp_path / "a.3mf", {"3D/3dmodel.model": text}))
+    (warning,) = scene.warnings
+    assert (warning.kind, warning.count) == ("material-colour", 12)
+    assert "painted in a slicer" in warning.message
+    for name, warned in (("Model_Settings", 2), ("Slic3r_PE_model", 2), ("other", 1)):
+        parts = {"3D/3dmodel.model": text, f"Metadata/{name}.config": settings}
+        assert len(load(write(tmp_path / "b.3mf", parts)).warnings) == warned

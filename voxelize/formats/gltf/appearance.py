@@ -118,7 +118,7 @@ class _AppearanceBuilder:
 
     def add(self, span: Span, key: MaterialKey, properties: MaterialProperties) -> bool:
         """Add the appearance of `span`; return False where its material has a uniform colour."""
-        colours = self._vertex_colours(span)
+        colours = self._vertex_colours(span, emits=properties.emits)
         texture = None
         uv = None
         if properties.texture is not None:
@@ -153,7 +153,7 @@ class _AppearanceBuilder:
                 colours[part] = own[span.corners]
         return SurfaceAppearance(tuple(self._entries), rows, uv, colours)
 
-    def _vertex_colours(self, span: Span) -> NDArray[np.float64] | None:
+    def _vertex_colours(self, span: Span, *, emits: bool) -> NDArray[np.float64] | None:
         """Return the linear colours of the vertices, shape (V, 4), or None where they have none or are all white."""
         if "COLOR_0" not in span.attributes:
             return None
@@ -165,6 +165,8 @@ class _AppearanceBuilder:
         if colours.shape[1] == 3:
             colours = np.column_stack([colours, np.ones(len(colours))])
         colours = clamped(colours, self._document.log)
+        if emits:
+            colours[:, :3] = 1.0
         return None if (colours == 1.0).all() else colours
 
     def _coordinates(self, span: Span, properties: MaterialProperties) -> NDArray[np.float64] | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 DRACO = "KHR_draco_mesh_compression"
+EMISSIVE_STRENGTH = "KHR_materials_emissive_strength"
 INSTANCING = "EXT_mesh_gpu_instancing"
 MESHOPT = ("KHR_meshopt_compression", "EXT_meshopt_compression")
 PHYSICS = "KHR_physics_rigid_bodies"
@@ -15,6 +16,7 @@ VISIBILITY = "KHR_node_visibility"
 SUPPORTED = frozenset(
     {
         DRACO,
+        EMISSIVE_STRENGTH,
         INSTANCING,
         *MESHOPT,
         PHYSICS,
@@ -40,7 +42,6 @@ WITHOUT_EFFECT = frozenset(
         "KHR_materials_anisotropy",
         "KHR_materials_clearcoat",
         "KHR_materials_dispersion",
-        "KHR_materials_emissive_strength",
         "KHR_materials_ior",
         "KHR_materials_iridescence",
         "KHR_materials_sheen",

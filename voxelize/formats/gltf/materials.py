@@ -6,16 +6,16 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from voxrt.voxelize.colour.srgb import srgb_from_linear
-from voxrt.voxelize.formats.gltf.extensions import SPECULAR_GLOSSINESS
+from voxrt.voxelize.formats.gltf.extensions import EMISSIVE_STRENGTH, SPECULAR_GLOSSINESS
 from voxrt.voxelize.formats.gltf.extras import material_extras
-from voxrt.voxelize.formats.gltf.schema import SpecularGlossiness
+from voxrt.voxelize.formats.gltf.schema import EmissiveStrength, SpecularGlossiness
 from voxrt.voxelize.materials import DEFAULT_COLOUR
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from voxrt.voxelize.formats.gltf.document import Document
-    from voxrt.voxelize.formats.gltf.schema import TextureInfo, Vec4
+    from voxrt.voxelize.formats.gltf.schema import Material, TextureInfo, Vec3, Vec4
     from voxrt.voxelize.formats.material_table import MaterialTable
 
 NO_MATERIAL = -1
@@ -43,6 +43,7 @@ class MaterialProperties:
     place: str = ""
     cutoff: float = 0.0  # the surface is cut away where its alpha is below this; 0 for opaque surfaces
     mirror: bool = False
+    emits: bool = False  # its colour is that of its emission, which vertex colours do not change
     is_clamped: bool = False  # the file's factor is not within 0 … 1
 
 
@@ -59,8 +60,9 @@ def material_properties(document: Document, key: MaterialKey) -> MaterialPropert
     if glossy is not None:
         factor, texture = glossy.diffuse_factor, glossy.diffuse_texture
         where = f"extensions.{SPECULAR_GLOSSINESS}.diffuseTexture"
-    if max(factor[:3]) <= 0 < max(material.emissive_factor):  # it reflects nothing, and shows what it emits
-        factor, texture, where = (*material.emissive_factor, factor[3]), material.emissive_texture, "emissiveTexture"
+    emission = _emission(document, material, place) if max(factor[:3]) <= 0 else None
+    if emission is not None:  # it reflects nothing, and shows what it emits
+        factor, texture, where = (*emission, factor[3]), material.emissive_texture, "emissiveTexture"
     red, green, blue, alpha = (min(max(component, 0.0), 1.0) for component in factor)
     return MaterialProperties(
         name=authored.voxrt_material or material.name or place,
@@ -70,8 +72,17 @@ def material_properties(document: Document, key: MaterialKey) -> MaterialPropert
         place=f"{place}.{where}",
         cutoff={"OPAQUE": 0.0, "MASK": material.alpha_cutoff, "BLEND": document.opaque_from}[material.alpha_mode],
         mirror=key.mirrored or bool(authored.voxrt_reflect),
+        emits=emission is not None,
         is_clamped=(red, green, blue, alpha) != tuple(factor),
     )
+
+
+def _emission(document: Document, material: Material, place: str) -> Vec3 | None:
+    """Return the linear emission of a material; None without any."""
+    found = document.extension(material, EMISSIVE_STRENGTH, EmissiveStrength, place)
+    strength = 1.0 if found is None else found.emissive_strength
+    red, green, blue = (component * strength for component in material.emissive_factor)
+    return (red, green, blue) if max(red, green, blue) > 0 else None
 
 
 def material_names(document: Document) -> dict[str, int]:

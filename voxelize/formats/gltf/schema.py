@@ -212,6 +212,12 @@ class SpecularGlossiness(Struct, frozen=True, kw_only=True, rename="camel"):
     diffuse_texture: TextureInfo | None = None
 
 
+class EmissiveStrength(Struct, frozen=True, kw_only=True, rename="camel"):
+    """KHR_materials_emissive_strength: by how much the emission is brighter than its factor and texture say."""
+
+    emissive_strength: Annotated[float, Meta(ge=0.0)] = 1.0
+
+
 class Material(Named, frozen=True, kw_only=True):
     """A material."""
 

@@ -60,6 +60,8 @@ class _Reader:
     def scene(self) -> Scene:
         root = self._model(self._package.root)
         shown = [found for item in root.items for found in self._shown(item, 0)]
+        if self._package.assigns_filaments():
+            self._log.add("material-colour", "filaments that a slicer gave objects were not read, nor their colours")
         self._has_colours = any(len(self._of(one).groups) for one in shown)
         keys = list(dict.fromkeys((one.part, one.number) for one in shown))
         loaded = [self._loaded(*key) for key in keys]
@@ -118,6 +120,8 @@ class _Reader:
         model = self._model(part)
         found = model.objects[number]
         count = len(found.triangles)
+        painted = "triangles painted in a slicer got the colour of their object: the colours of filaments are not read"
+        self._log.add("material-colour", painted, found.painted)
         materials = np.zeros(count, np.uint8)
         colours = np.full((count, 3, 4), _OPAQUE, np.uint8)
         coloured = np.zeros(count, np.bool_)

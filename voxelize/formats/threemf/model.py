@@ -22,6 +22,7 @@ UNITS = {"micron": 1e-6, "millimeter": 1e-3, "centimeter": 1e-2, "inch": 0.0254,
 
 _DEFAULT_UNIT = "millimeter"
 _NONE = -1
+_PAINTED = {"paint_color", "mmu_segmentation"}  # of triangles: by Bambu Studio and OrcaSlicer; by PrusaSlicer
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -39,7 +40,8 @@ class ModelObject:
     """An object: triangles or components.
 
     `groups` are the property groups that triangles name, by their numbers in the part; `properties`, int64, shape
-    (T, 4), has the row of the group of each triangle, and those of the corners in it; -1 for none.
+    (T, 4), has the row of the group of each triangle, and those of the corners in it; -1 for none. `painted`: triangles
+    that a slicer painted, in filaments.
     """
 
     name: str
@@ -48,6 +50,7 @@ class ModelObject:
     groups: list[str]
     properties: NDArray[np.int64]
     components: list[Placed]
+    painted: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,6 +132,7 @@ def _object(element: Any, part: str) -> ModelObject:  # noqa: ANN401
         groups,
         np.array(rows, np.int64).reshape(-1, 4),
         [_placed(one, part) for one in element.iter("{*}component")],
+        sum(any(key.rpartition("}")[2] in _PAINTED for key in one.keys()) for one in faces),  # noqa: SIM118 - of lxml
     )
 
 

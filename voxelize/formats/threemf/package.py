@@ -18,6 +18,7 @@ _FREE_BYTES, _MOST_TIMES = 1 << 26, 64
 """What the parts of a file may unpack to: so many bytes, and so many times its size more."""
 _ROOT = "3d/3dmodel.model"
 _RELATIONS = "_rels/.rels"
+_SETTINGS = ("metadata/model_settings.config", "metadata/slic3r_pe_model.config")  # of Bambu Studio, of PrusaSlicer
 _IS_ROOT = "/3dmodel"  # how the type of the relation to the root model ends
 
 
@@ -56,13 +57,19 @@ class Package:
             (part_name(one.get("Target", "")) for one in relations if one.get("Type", "").endswith(_IS_ROOT)), ""
         )
 
+    def assigns_filaments(self) -> bool:
+        """Tell whether a slicer has written which filament prints which object."""
+        return any(part in self.names and b"extruder" in self._text(part) for part in _SETTINGS)
+
     def elements(self, part: str, *tags: str, event: str = "end") -> Iterator[Any]:
         """Go through the elements of a part with some tags, of any namespace, as they end."""
+        return xml_elements(self.path, self._text(part), *tags, event=event, place=part)
+
+    def _text(self, part: str) -> bytes:
         try:
-            text = self.archive.read(self.names[part])
+            return self.archive.read(self.names[part])
         except (zipfile.BadZipFile, OSError, NotImplementedError, RuntimeError, EOFError, ValueError) as error:
             raise _no_package(self.path, type(error).__name__) from None
-        return xml_elements(self.path, text, *tags, event=event, place=part)
 
 
 def part_name(name: str) -> str:

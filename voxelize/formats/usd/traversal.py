@@ -96,7 +96,7 @@ class StageTraversal:
         `to_scene`, float64, shape (4, 4), takes the stage's frame to the scene's.
         """
         placed = self._below(self.stage.GetPseudoRoot(), PREDICATE)
-        transforms = [self._to_scene(one, to_scene) for one in placed]
+        transforms = self._to_scene(placed, to_scene)
         meshes = assign_materials(self._meshes, self.materials.table, self.log, self.opaque_from)
         bodies = {one.body for one in placed if one.body and one.colliders}
         objects = []
@@ -138,15 +138,20 @@ class StageTraversal:
                 )
         return tuple(objects)
 
-    def _to_scene(self, one: _PlacedMesh, to_scene: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _to_scene(self, placed: list[_PlacedMesh], to_scene: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the transforms of objects to the scene's frame, float64, shape (N, 4, 4)."""
+        own = np.array([one.transform for one in placed], np.float64).reshape(-1, 4, 4)
         with np.errstate(over="ignore", invalid="ignore"):
-            transform: NDArray[np.float64] = to_scene @ one.transform
-        if not np.isfinite(transform).all():
-            raise AssetError(self.path, "its transform is not finite", place=one.name, fix="repair its xformOps")
-        if np.abs(one.transform[3] - (0, 0, 0, 1)).max() > _AFFINE_TOLERANCE:
-            self.log.add("transform", "the projective part of transforms that are not affine was ignored")
-            transform[3] = (0.0, 0.0, 0.0, 1.0)
-        return transform
+            transforms: NDArray[np.float64] = to_scene @ own
+        broken = ~np.isfinite(transforms).all(axis=(1, 2))
+        if broken.any():
+            name = placed[int(np.argmax(broken))].name
+            raise AssetError(self.path, "its transform is not finite", place=name, fix="repair its xformOps")
+        projective = np.abs(own[:, 3] - (0, 0, 0, 1)).max(axis=1) > _AFFINE_TOLERANCE
+        message = "the projective part of transforms that are not affine was ignored"
+        self.log.add("transform", message, int(projective.sum()))
+        transforms[projective, 3] = (0.0, 0.0, 0.0, 1.0)
+        return transforms
 
     def _below(self, root: Usd.Prim, predicate: object) -> list[_PlacedMesh]:
         """Return the objects of `root` and its descendants, in the stage's frame."""
@@ -177,14 +182,33 @@ class StageTraversal:
             models.append([replace(one, transform=back @ one.transform) for one in model])
         self._open_instancers.pop()
         self._charge(int(sum(len(models[index]) for index in indices)))
+        to_stage = here @ transforms
+        ends: list[list[tuple[_PlacedMesh, str, str | None]]] = []  # of each model: how names and bodies of copies end
+        moved: list[NDArray[np.float64]] = []  # by model and object: the transforms of its copies
+        for index, prototype in enumerate(prototypes):
+            source = str(prototype.GetPath())
+            ends.append(
+                [
+                    (
+                        one,
+                        one.name.removeprefix(source),
+                        one.body.removeprefix(source) if one.body.startswith(source) else None,
+                    )
+                    for one in models[index]
+                ]
+            )
+            own = np.array([one.transform for one in models[index]]).reshape(-1, 1, 4, 4)
+            moved.append(to_stage[indices == index] @ own)
         placed: list[_PlacedMesh] = []
-        for index, to_instancer, number in zip(indices.tolist(), here @ transforms, numbers.tolist(), strict=True):
-            for one in models[index]:
-                source, copy = str(prototypes[index].GetPath()), f"{place}[{number}]"
-                name = copy + one.name.removeprefix(source)
-                body = copy + one.body.removeprefix(source) if one.body.startswith(source) else one.body
-                transform = to_instancer @ one.transform
-                placed.append(replace(one, name=name, transform=transform, body=body))
+        nth = [0] * len(prototypes)
+        for index, number in zip(indices.tolist(), numbers.tolist(), strict=True):
+            copy, at = f"{place}[{number}]", nth[index]
+            nth[index] += 1
+            for (one, name, body), of_copies in zip(ends[index], moved[index], strict=True):
+                own_body = one.body if body is None else copy + body
+                placed.append(
+                    _PlacedMesh(copy + name, one.mesh, of_copies[at], one.colliders, own_body, one.rule, one.fill)
+                )
         return placed
 
     def _charge(self, count: int) -> None:

@@ -197,6 +197,8 @@ nb::object volumes_of_parts(const SceneParts& scene, int threads, const std::str
 }
 
 /// A BlockVoxelizer. The parts must outlive it.
+constexpr size_t kTallies = 6; // of an object: ObjectTally
+
 class PythonBlockVoxelizer {
 public:
     PythonBlockVoxelizer(const SceneParts& scene, const std::string& thin, int threads, InputOf<uint8_t> wanted)
@@ -239,19 +241,20 @@ public:
         }
         std::vector<int64_t> rows;
         for (const ObjectTally& t : tallies)
-            rows.insert(rows.end(), {t.voxels, t.shell_of_open, t.inside_of_open, t.overlaps_itself});
+            rows.insert(rows.end(),
+                        {t.voxels, t.shell_of_open, t.inside_of_open, t.overlaps_itself, t.positive, t.negative});
         return voxel_block(take(out.brick_codes), take(out.brick_masks), take(out.brick_materials),
                            take(out.brick_rows), take(out.cells), take(out.octant_codes), take(out.octant_levels),
-                           take(out.octant_materials), to_numpy(std::move(rows), {objects_, 4}));
+                           take(out.octant_materials), to_numpy(std::move(rows), {objects_, kTallies}));
     }
 
     nb::object report(InputOf<int64_t> tallies) const {
-        require_rows(tallies, 4, "tallies must have shape (O, 4)");
+        require_rows(tallies, kTallies, "tallies must have shape (O, 6)");
         require(tallies.shape(0) == objects_, "tallies must have a row per object");
         std::vector<ObjectTally> rows(objects_);
         for (size_t i = 0; i < objects_; ++i) {
-            const int64_t* row = tallies.data() + 4 * i;
-            rows[i] = {row[0], row[1], row[2], row[3]};
+            const int64_t* row = tallies.data() + kTallies * i;
+            rows[i] = {row[0], row[1], row[2], row[3], row[4], row[5]};
         }
         SparseVoxels out = native_->report(rows);
         out.seconds = native_->seconds();
@@ -387,7 +390,7 @@ NB_MODULE(_native, m) {
     voxel_block = NamedTuple(m, "VoxelBlock",
                              {"brick_codes", "brick_masks", "brick_materials", "brick_rows", "cells", "octant_codes",
                               "octant_levels", "octant_materials", "object_tallies"},
-                             "What BlockVoxelizer.block() returns; tallies (src/voxelizer.h): int64, shape (O, 4).");
+                             "What BlockVoxelizer.block() returns; tallies (src/voxelizer.h): int64, shape (O, 6).");
     voxel_volumes = NamedTuple(m, "VoxelVolumes", {"objects", "voxels", "volumes", "whole", "known"},
                                "What find_volumes() returns.");
     nb::register_exception_translator(

@@ -44,9 +44,15 @@ int surplus_of(Uses uses) {
     return sum;
 }
 
+/// Whether two faces meet at an edge, and walk it one way each.
+bool is_pair(Uses uses) { return uses.size() == 2 && surplus_of(uses) == 0; }
+
 /// Faces connected by edges.
 struct Component {
-    bool is_balanced = true;       // each edge is walked as often one way as the other
+    bool is_balanced = true;       // each edge is walked as often one way as the other, and no face contradicts another
+    bool is_doubted = false;       // it may have two sides that are one
+    bool in_front_of_it = false;   // faces that have the outside in front of them, as authored
+    bool behind_it = false;        // and behind
     bool is_two_sided = false;     // a face that is there once for each side parts inside from outside
     bool is_paired = true;         // each face is there as often for each side, and its pieces have two sides
     uint32_t outside = UINT32_MAX; // a cell
@@ -76,6 +82,7 @@ public:
         find_sheets();
         join_sides();
         find_outsides();
+        find_contradictions();
         find_two_sided();
         tell_inside();
         auto found = std::make_shared<Orientation>();
@@ -100,11 +107,15 @@ private:
     void find_components() {
         edges_.each([&](uint32_t, Uses uses) {
             const bool balanced = uses.size() == 1 || surplus_of(uses) == 0;
-            if (!balanced || (flat_ && uses.size() > 2))
-                found_at(uses[0].face).is_balanced &= balanced;
+            if (!balanced || uses.size() > 2) {
+                Component& component = found_at(uses[0].face);
+                component.is_balanced &= balanced;
+                component.is_doubted |= flat_;
+            }
         });
         whole_.each([&](uint32_t, Uses uses) {
-            each_repeated(uses, sorted_, [&](const EdgeUse& first, const EdgeUse&) { found_at(first.face); });
+            each_repeated(uses, sorted_,
+                          [&](const EdgeUse& first, const EdgeUse&) { found_at(first.face).is_doubted = true; });
         });
     }
     Component& found_at(uint32_t face) {
@@ -202,14 +213,30 @@ private:
         });
     }
 
+    /// Finds balanced components of which some faces have the outside in front of them, and others have it behind:
+    /// parts that meet at edges, of which some are inside out.
+    void find_contradictions() {
+        each_first([&](uint32_t f, Component& component) {
+            const bool outside_in_front = !is_inside(front(f), component);
+            if (surplus_[f] == 0 || outside_in_front != is_inside(back(f), component))
+                return;
+            (outside_in_front == (surplus_[f] > 0) ? component.in_front_of_it : component.behind_it) = true;
+        });
+        for (Component& component : components_)
+            component.is_balanced &= !(component.in_front_of_it && component.behind_it);
+    }
+
     /// Finds components that are there once for each side as a whole; and those whose outside and inside are parted by
     /// faces that are: equal ones, or such that hold a cell without volume between them.
     void find_two_sided() {
         enum : uint8_t { kTouchesOutside = 1, kTouchesInside = 2, kBoth = 3 };
         std::vector<uint8_t> touches(2 * size_t(count_), 0);
         each_first([&](uint32_t f, Component& component) {
-            component.is_paired &= surplus_[f] == 0 && pieces_.find(front(f)) != pieces_.find(back(f));
+            component.is_paired &=
+                component.is_doubted && surplus_[f] == 0 && pieces_.find(front(f)) != pieces_.find(back(f));
             const uint32_t cells[2] = {cells_.find(front(f)), cells_.find(back(f))};
+            if (!component.is_doubted)
+                return;
             for (int i = 0; i < 2; ++i) {
                 const uint32_t own = cells[i], other = cells[1 - i];
                 if (other == component.outside) {
@@ -322,10 +349,7 @@ private:
 std::shared_ptr<const Orientation> find_orientation(const MeshEdges& whole, const MeshEdges& edges,
                                                     const std::vector<Vertex>& vertices, bool flat) {
     bool consistent = true;
-    edges.each([&](uint32_t, Uses uses) {
-        if (uses.size() > 1)
-            consistent = consistent && surplus_of(uses) == 0 && (!flat || uses.size() == 2);
-    });
+    edges.each([&](uint32_t, Uses uses) { consistent = consistent && (uses.size() == 1 || is_pair(uses)); });
     std::vector<EdgeUse> sorted;
     whole.each([&](uint32_t, Uses uses) {
         each_repeated(uses, sorted, [&](const EdgeUse&, const EdgeUse&) { consistent = false; });

@@ -26,6 +26,9 @@ struct HoleCaps {
     std::vector<uint8_t> shell_only; // by triangle of the mesh: 1 in an open component; empty where none is
     double opening = 0; // the largest share of its area that the loops of a filled component, closed, have together
     bool has_open_enclosure = false; // an open component encloses space, as a room without a front does
+
+    /// Whether the surface closes but for rounding and the seams of T-junctions.
+    bool are_seams() const { return shell_only.empty() && opening < 1e-6; }
 };
 
 /// `points`: a position per vertex. `orientation`: null where all faces are as the file says. Linear in the faces.

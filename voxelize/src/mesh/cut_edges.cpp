@@ -68,16 +68,17 @@ bool overlap(const Vertex& u, const Vertex& v, const Vertex& a, const Vertex& b)
     return dot(p, q) > along; // on one side of the edge
 }
 
-/// Whether an odd number of faces meets at an edge, those that lie upon one another counted once, and of many the
-/// first.
-bool is_odd(uint32_t low, std::span<const EdgeUse> uses, const std::vector<Vertex>& at) {
-    size_t distinct = 0;
+/// Whether the faces at an edge do not pair: more walk it one way than the other. Those that lie upon one another count
+/// once, and of many the first.
+bool is_unpaired(uint32_t low, std::span<const EdgeUse> uses, const std::vector<Vertex>& at) {
+    int surplus = 0;
     uses = uses.first(std::min(uses.size(), kMostFaces));
     for (size_t i = 0; i < uses.size(); ++i)
-        distinct += std::none_of(uses.begin(), uses.begin() + ptrdiff_t(i), [&](const EdgeUse& other) {
-            return overlap(at[low], at[uses[0].high], at[other.opposite], at[uses[i].opposite]);
-        });
-    return distinct % 2 == 1;
+        if (std::none_of(uses.begin(), uses.begin() + ptrdiff_t(i), [&](const EdgeUse& other) {
+                return overlap(at[low], at[uses[0].high], at[other.opposite], at[uses[i].opposite]);
+            }))
+            surplus += uses[i].is_upwards ? 1 : -1;
+    return surplus != 0;
 }
 
 } // namespace
@@ -88,7 +89,7 @@ std::optional<MeshEdges> cut_edges(const MeshEdges& edges, const std::vector<Ver
     edges.each([&](uint32_t low, std::span<const EdgeUse> uses) {
         whole.add(vertices[low]);
         whole.add(vertices[uses[0].high]);
-        if (is_odd(low, uses, vertices))
+        if (is_unpaired(low, uses, vertices))
             is_end[low] = is_end[uses[0].high] = true;
     });
     std::vector<std::pair<TriangleBox, uint32_t>> ends;
@@ -107,7 +108,7 @@ std::optional<MeshEdges> cut_edges(const MeshEdges& edges, const std::vector<Ver
     std::vector<EdgeCut> cuts;
     std::vector<std::pair<double, uint32_t>> on_edge;
     edges.each([&](uint32_t low, std::span<const EdgeUse> uses) {
-        if (!is_odd(low, uses, vertices))
+        if (!is_unpaired(low, uses, vertices))
             return;
         const uint32_t high = uses[0].high;
         const Segment segment(vertices[low], vertices[high], kRounding + size * kRoundingOfFile);

@@ -58,17 +58,14 @@ struct Component {
 class ClosedComponents {
 public:
     ClosedComponents(const MeshView& mesh, const std::vector<Vertex>& vertices, const Orientation* orientation,
-                     const HoleCaps* caps)
-        : mesh_(mesh), vertices_(vertices), orientation_(orientation), caps_(caps), sets_(vertices.size()) {
-        size_t joins = 0;
-        for (size_t t = 0; t < count(); ++t)
-            if (is_closed_part(t)) {
-                count_work(1);
-                const Corners c = corners(t);
-                joins += sets_.merge(c[0], c[1]);
-                joins += sets_.merge(c[0], c[2]);
-            }
-        is_one_ = joins + 1 >= vertices.size();
+                     const HoleCaps* caps, const MeshEdges* edges)
+        : mesh_(mesh), vertices_(vertices), orientation_(orientation), caps_(caps),
+          by_edges_(edges != nullptr && (caps == nullptr || caps->are_seams())),
+          sets_(by_edges_ ? mesh.triangle_count() : vertices.size()) {
+        if (by_edges_)
+            join_at(*edges);
+        else
+            join_at_vertices();
     }
 
     /// Whether there is a single component, vertices that no triangle uses left out.
@@ -76,31 +73,35 @@ public:
 
     /// Finds the components.
     void split() {
-        weld();
-        std::vector<uint32_t> component_at(vertices_.size(), kNoComponent), seen(vertices_.size(), kNoComponent);
+        if (!by_edges_)
+            weld();
+        std::vector<uint32_t> component_at(std::max(vertices_.size(), count()), kNoComponent);
+        std::vector<uint32_t> seen(vertices_.size(), kNoComponent);
         component_of_.assign(count(), kNoComponent);
         for (size_t t = 0; t < count(); ++t) {
             if (!is_closed_part(t))
                 continue;
             count_work(5);
             const Corners c = corners(t);
-            uint32_t& component = component_at[sets_.find(c[0])];
+            uint32_t& component = component_at[sets_.find(by_edges_ ? uint32_t(t) : c[0])];
             if (component == kNoComponent) {
                 component = uint32_t(components_.size());
                 components_.emplace_back();
             }
             component_of_[t] = component;
             Component& own = components_[component];
-            own.capped = own.capped || t >= mesh_.triangle_count();
+            own.capped = own.capped || (t >= mesh_.triangle_count() && !caps_->are_seams());
             for (const uint32_t v : c) {
                 own.box.add(vertices_[v]);
-                if (seen[v] == kNoComponent)
+                if (seen[v] != component)
                     own.vertices.push_back(v);
                 seen[v] = component;
             }
             own.triangles.push_back(uint32_t(t));
             own.volume6 += volume6_of(vertices_[c[0]], vertices_[c[1]], vertices_[c[2]], vertices_[own.vertices[0]]);
         }
+        for (const uint32_t face : open_faces_)
+            components_[component_of_[face]].capped = true;
     }
 
     /// Whether some component faces inwards and may be flipped, while others face outwards.
@@ -175,6 +176,38 @@ public:
     }
 
 private:
+    void join_at_vertices() {
+        size_t joins = 0;
+        for (size_t t = 0; t < count(); ++t)
+            if (is_closed_part(t)) {
+                count_work(1);
+                const Corners c = corners(t);
+                joins += sets_.merge(c[0], c[1]);
+                joins += sets_.merge(c[0], c[2]);
+            }
+        is_one_ = joins + 1 >= vertices_.size();
+    }
+    /// Parts that touch at a vertex alone stay apart.
+    void join_at(const MeshEdges& edges) {
+        size_t joins = 0, faces = 0;
+        edges.each([&](uint32_t, std::span<const EdgeUse> uses) {
+            uint32_t first = kNoComponent;
+            int surplus = 0;
+            for (const EdgeUse& use : uses)
+                if (is_closed_part(use.face)) {
+                    joins += first != kNoComponent && sets_.merge(first, use.face);
+                    first = use.face;
+                    const bool is_reversed = orientation_ != nullptr && orientation_->is_reversed(use.face);
+                    surplus += (use.is_upwards != 0) == is_reversed ? -1 : 1;
+                }
+            if (surplus != 0)
+                open_faces_.push_back(first);
+        });
+        for (size_t t = 0; t < mesh_.triangle_count(); ++t)
+            faces += is_closed_part(t);
+        is_one_ = joins + 1 >= faces;
+    }
+
     /// Flips faces that do not count with the components on which they lie.
     void flip_uncounted(Orientation& orientation) const {
         std::unordered_set<uint64_t> flipped; // positions
@@ -195,14 +228,14 @@ private:
     struct Enclosing {
         uint32_t component;
         int winding;
-        bool touched; // then it does not enclose
+        bool touched;
     };
 
     size_t count() const { return mesh_.triangle_count() + (caps_ != nullptr ? caps_->triangles.size() : 0); }
     /// Whether a triangle belongs to what closes: not to an open component.
     bool is_closed_part(size_t t) const {
         if (t >= mesh_.triangle_count())
-            return true;
+            return !by_edges_; // the caps of seams have no area
         return (orientation_ == nullptr || !orientation_->is_uncounted(t)) &&
                (caps_ == nullptr || caps_->shell_only.empty() || caps_->shell_only[t] == 0);
     }
@@ -257,7 +290,8 @@ private:
         }
     }
 
-    /// The winding numbers of larger components at a vertex, by the triangles above it.
+    /// The winding numbers of larger components at a vertex, by the triangles above it. Of those that it touches the
+    /// winding number is not known.
     std::vector<Enclosing> winding_at(uint32_t own, uint32_t vertex, const TriangleBvh& bvh) const {
         const Vertex& q = vertices_[vertex];
         std::vector<Enclosing> found;
@@ -284,13 +318,19 @@ private:
             if (side != 0 && side_of(b, c, q) == side && side_of(c, a, q) == side && height == side)
                 at(component).winding += side;
         });
-        std::erase_if(found, [](const Enclosing& enclosing) { return enclosing.touched || enclosing.winding == 0; });
+        std::erase_if(found, [](const Enclosing& enclosing) { return !enclosing.touched && enclosing.winding == 0; });
         return found;
     }
 
     std::vector<Enclosing> find_enclosing(uint32_t own, const TriangleBvh& bvh) const {
         const Component& component = components_[own];
-        std::vector<Enclosing> enclosing = winding_at(own, component.vertices[0], bvh);
+        std::vector<Enclosing> enclosing;
+        for (const uint32_t vertex : component.vertices) {
+            enclosing = winding_at(own, vertex, bvh);
+            if (std::none_of(enclosing.begin(), enclosing.end(), [](const Enclosing& one) { return one.touched; }))
+                break;
+        }
+        std::erase_if(enclosing, [](const Enclosing& one) { return one.touched; });
         // A component whose surface is not near a triangle encloses all of it or none of it.
         std::vector<uint32_t> near;
         for (size_t from = 0; from < component.triangles.size() && !enclosing.empty(); from += kBatch) {
@@ -313,14 +353,21 @@ private:
     /// Keeps the components that enclose a triangle as well.
     void keep_enclosing(uint32_t own, const Corners& c, const std::vector<uint32_t>& near, const TriangleBvh& bvh,
                         std::vector<Enclosing>& enclosing) const {
-        for (const uint32_t v : c) {
-            const std::vector<Enclosing> here = winding_at(own, v, bvh);
-            std::erase_if(enclosing, [&](const Enclosing& one) {
-                return std::none_of(here.begin(), here.end(), [&](const Enclosing& other) {
-                    return other.component == one.component && other.winding == one.winding;
+        std::array<std::vector<Enclosing>, 3> at;
+        for (size_t i = 0; i < 3; ++i)
+            at[i] = winding_at(own, c[i], bvh);
+        std::erase_if(enclosing, [&](const Enclosing& one) {
+            size_t touched = 0;
+            for (const std::vector<Enclosing>& here : at) {
+                const auto other = std::find_if(here.begin(), here.end(), [&](const Enclosing& found) {
+                    return found.component == one.component && (found.touched || found.winding == one.winding);
                 });
-            });
-        }
+                if (other == here.end())
+                    return true;
+                touched += other->touched;
+            }
+            return touched == 3; // what lies on the surface around it is no wall of a cavity
+        });
         TriangleBox box;
         for (const uint32_t v : c)
             box.add(vertices_[v]);
@@ -346,7 +393,9 @@ private:
     const std::vector<Vertex>& vertices_;
     const Orientation* orientation_;
     const HoleCaps* caps_;
-    DisjointSets sets_;
+    bool by_edges_;
+    DisjointSets sets_;                // of vertices, or of faces
+    std::vector<uint32_t> open_faces_; // by edges: of components that do not close
     bool is_one_;
     std::vector<uint32_t> component_of_; // by triangle
     std::vector<Component> components_;  // by first triangle
@@ -356,8 +405,9 @@ private:
 } // namespace
 
 FlippedComponents flip_components(const MeshView& mesh, const std::vector<Vertex>& vertices,
-                                  std::shared_ptr<const Orientation> orientation, const HoleCaps* caps) {
-    ClosedComponents components(mesh, vertices, orientation.get(), caps);
+                                  std::shared_ptr<const Orientation> orientation, const HoleCaps* caps,
+                                  const MeshEdges* edges) {
+    ClosedComponents components(mesh, vertices, orientation.get(), caps, edges);
     if (components.is_one())
         return {orientation, false};
     components.split();

@@ -18,13 +18,15 @@ namespace voxrt::voxelize {
 /// whole is inverted.
 ///
 /// `vertices`: a position per vertex, in grid space or in any finer lattice. `caps`: what closes the surface, or null
-/// where it closes by itself. Components with caps are never flipped, nor are others beside a capped one that is inside
-/// out.
+/// where it closes by itself. Components with caps that are more than seams are never flipped, nor are others beside
+/// such a one that is inside out. Caps stay as they are: they are to be found anew. `edges`: of the mesh, cut; null
+/// where nobody needed them, so that parts that touch at a vertex alone are one component.
 struct FlippedComponents {
     std::shared_ptr<const Orientation> orientation;
     bool has_flat; // of several components one has no volume
 };
 FlippedComponents flip_components(const MeshView& mesh, const std::vector<Vertex>& vertices,
-                                  std::shared_ptr<const Orientation> orientation, const HoleCaps* caps);
+                                  std::shared_ptr<const Orientation> orientation, const HoleCaps* caps,
+                                  const MeshEdges* edges);
 
 } // namespace voxrt::voxelize

@@ -10,8 +10,6 @@
 namespace voxrt::voxelize {
 namespace {
 
-constexpr double kSeams = 1e-6; // the share of a surface's area that openings have which close but for rounding
-
 /// Points in a lattice of their own, so fine that those of a float32 file stay apart.
 std::vector<Vertex> in_lattice(const std::vector<Point>& points, const Point& low, const Point& high) {
     const double scale = double(kCoordinateLimit) / std::max({high.x - low.x, high.y - low.y, high.z - low.z, 1e-300});
@@ -95,10 +93,11 @@ Enclosed find_enclosed(const MeshView& mesh, const TriangleSums& sums, double bo
                        const std::vector<Vertex>& vertices, const std::function<std::vector<Point>()>& points,
                        Fill fill) {
     Enclosed found{sums.boundary == 0, sums.volume6, nullptr, nullptr};
-    std::optional<MeshEdges> edges;
+    std::optional<MeshEdges> edges, cut;
     const auto orient = [&](bool flat) {
         edges.emplace(mesh, weld(keys));
-        const std::optional<MeshEdges> cut = cut_edges(*edges, vertices);
+        if (std::optional<MeshEdges> found_cut = cut_edges(*edges, vertices))
+            cut.emplace(std::move(*found_cut));
         found.orientation = find_orientation(*edges, cut ? *cut : *edges, vertices, flat);
         if (found.orientation) {
             found.closed = closes(*edges, *found.orientation);
@@ -109,11 +108,20 @@ Enclosed find_enclosed(const MeshView& mesh, const TriangleSums& sums, double bo
     const auto close_and_flip = [&] {
         if (!found.closed && !fills(fill))
             return false;
-        if (!found.closed)
+        const auto cap_holes = [&] {
             found.hole_caps =
                 std::make_shared<const HoleCaps>(find_hole_caps(*edges, found.orientation.get(), points(), fill));
-        FlippedComponents flipped = flip_components(mesh, vertices, found.orientation, found.hole_caps.get());
+        };
+        if (!found.closed)
+            cap_holes();
+        FlippedComponents flipped = flip_components(mesh, vertices, found.orientation, found.hole_caps.get(),
+                                                    cut     ? &*cut
+                                                    : edges ? &*edges
+                                                            : nullptr);
+        const bool are_flipped = flipped.orientation != found.orientation;
         found.orientation = std::move(flipped.orientation);
+        if (are_flipped && found.hole_caps && found.hole_caps->are_seams())
+            cap_holes();
         return flipped.has_flat;
     };
     const bool flat = found.closed && std::abs(sums.volume6) < 1e-6 * box;
@@ -207,9 +215,9 @@ void analyze_part(MeshAnalysis& analysis, const PartView& part, const TriangleSu
     }
     analysis.closed = found.closed;
     // What closes but for the seams of T-junctions has a volume as well.
-    const bool is_tight = found.hole_caps && found.hole_caps->shell_only.empty() && found.hole_caps->opening < kSeams;
+    const bool is_tight = found.hole_caps && found.hole_caps->are_seams();
     analysis.inverted = (found.closed || is_tight) && found.volume6 < 0;
-    if (found.closed && found.orientation && found.orientation->components > 0)
+    if ((found.closed || is_tight) && found.orientation && found.orientation->components > 0)
         analysis.inverted = shared != nullptr && determinant(part.frame) < 0;
     analysis.hole_caps = found.hole_caps;
     analysis.orientation = found.orientation;

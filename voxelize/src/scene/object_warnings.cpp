@@ -21,7 +21,7 @@ std::string listed(const std::vector<std::string>& names) {
 
 std::vector<ObjectWarning> object_warnings(const VoxelizedObjects& objects) {
     std::vector<std::string> without, mostly_filled;
-    int64_t open = 0, flipped = 0, turned = 0, one_sided = 0;
+    int64_t open = 0, flipped = 0, turned = 0, one_sided = 0, inward = 0;
     for (size_t i = 0; i < objects.names.size(); ++i) {
         if (objects.reported[i] && objects.voxels[i] == 0)
             without.push_back(objects.names[i]);
@@ -30,6 +30,7 @@ std::vector<ObjectWarning> object_warnings(const VoxelizedObjects& objects) {
         flipped += notes[kFlippedComponents];
         turned += notes[kTurnedFaces];
         one_sided += notes[kOneSidedPieces];
+        inward += objects.reported[i] && notes[kInwardParts] != 0;
         if (notes[kMostlyFilled] != 0)
             mostly_filled.push_back(objects.names[i]);
     }
@@ -41,14 +42,14 @@ std::vector<ObjectWarning> object_warnings(const VoxelizedObjects& objects) {
         warnings.push_back(
             {"open-surface",
              "open objects, like a room without a front, were not filled: close them, give them colliders, or fill "
-             "objects that close one another together",
+             "those that close one another as one by --fill together",
              open});
     if (!mostly_filled.empty()) {
         const size_t others = mostly_filled.size() - 1;
         const std::string more = others > 0 ? " and " + std::to_string(others) + " more" : "";
         warnings.push_back({"mostly-filled",
                             "open objects were filled, and are more inside than shell (" + mostly_filled[0] + more +
-                                "): build thin sheets, such as cloth, with fill surface",
+                                "): build thin sheets, such as cloth, with --fill surface",
                             int64_t(mostly_filled.size())});
     }
     if (flipped > 0)
@@ -61,10 +62,16 @@ std::vector<ObjectWarning> object_warnings(const VoxelizedObjects& objects) {
                             "faces were wound against those beside them and were turned, so that what the surface "
                             "encloses is solid: recalculate the normals",
                             turned});
+    if (inward > 0)
+        warnings.push_back(
+            {"inward-parts",
+             "objects have parts that face inwards and touch or cross others, and were not turned: such "
+             "parts may be a voxel too large, and hollow where they cross others; recalculate the normals",
+             inward});
     if (one_sided > 0)
         warnings.push_back({"one-sided",
                             "pieces have one side only, like a Klein bottle, so nothing tells their inside for sure: "
-                            "look at the picture, or build them with fill surface",
+                            "look at the picture, or build them with --fill surface",
                             one_sided});
     return warnings;
 }

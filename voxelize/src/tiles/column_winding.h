@@ -42,6 +42,9 @@ public:
     /// Columns whose winding number is not zero.
     uint64_t inside() const { return inside_; }
 
+    /// Columns whose winding number is below zero.
+    uint64_t below_zero() const { return inside_ & planes_[kPlanes - 1]; }
+
     /// The winding number of one column.
     int at(int bit) const {
         uint32_t value = 0;
@@ -52,6 +55,9 @@ public:
 
     /// Whether all numbers since construction were 0 and 1, or 0 and -1.
     bool simple() const { return overlap_ == 0 && (positive_ == 0 || negative_ == 0); }
+    /// Whether some number since construction was above 0, or below.
+    bool was_positive() const { return positive_ != 0; }
+    bool was_negative() const { return negative_ != 0; }
 
 private:
     static constexpr int kPlanes = 32;

@@ -23,10 +23,16 @@
 namespace voxrt::voxelize {
 
 struct Claim {
-    int64_t voxels = 0; // that no earlier object had
-    int64_t shell = 0;  // voxels of the shell, whoever has them
-    int64_t inside = 0; // voxels that the shell encloses, whoever has them
-    bool simple = true; // all winding numbers were 0 and 1, or 0 and -1
+    int64_t voxels = 0;                      // that no earlier object had
+    int64_t shell = 0;                       // voxels of the shell, whoever has them
+    int64_t inside = 0;                      // voxels that the shell encloses, whoever has them
+    bool simple = true;                      // all winding numbers were 0 and 1, or 0 and -1
+    bool positive = false, negative = false; // whether some winding number was that caps do not change
+
+    void add(const ColumnWinding& winding) {
+        positive = positive || winding.was_positive();
+        negative = negative || winding.was_negative();
+    }
 };
 
 class SolidFill {
@@ -148,6 +154,7 @@ private:
             ++k;
         }
         result.simple = result.simple && winding.simple();
+        result.add(winding);
     }
 
     /// Adds to `below_` what pieces of a brick add to the brick above. Returns the columns that are summed: those that
@@ -238,6 +245,11 @@ private:
                 within[z] = kind == GeneralizedInside::Class::inside   ? ~uint64_t{0}
                             : kind == GeneralizedInside::Class::capped ? winding.inside()
                                                                        : 0;
+                if (kind == GeneralizedInside::Class::capped) {
+                    const uint64_t below = winding.below_zero();
+                    result.negative = result.negative || below != 0;
+                    result.positive = result.positive || winding.inside() != below;
+                }
                 for (int bit = 0; mixed && bit < 64; ++bit)
                     numbers_[z * 64 + bit] = winding.at(bit);
             }

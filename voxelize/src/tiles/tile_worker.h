@@ -23,7 +23,8 @@ inline constexpr double kNotedOpening = 0.01;
 struct Scratch {
     Scratch(int side, size_t objects, size_t parts, bool has_rule)
         : surface(side), tile(side), rule(has_rule ? std::make_unique<RuleTile>(side, objects > 1) : nullptr),
-          object_voxels(objects, 0), shell_of_open(objects, 0), inside_of_open(objects, 0), overlaps_itself(parts, 0) {
+          object_voxels(objects, 0), shell_of_open(objects, 0), inside_of_open(objects, 0), overlaps_itself(parts, 0),
+          positive(objects, 0), negative(objects, 0) {
         fill.use_rule(rule.get());
     }
     TileSurface surface;
@@ -35,6 +36,7 @@ struct Scratch {
     std::vector<int64_t> object_voxels;
     std::vector<int64_t> shell_of_open, inside_of_open; // by object: of parts with openings worth a note
     std::vector<uint8_t> overlaps_itself;               // by part: ObjectFindings
+    std::vector<uint8_t> positive, negative;            // by object: winding numbers that were met
     StageSeconds seconds;
 };
 
@@ -148,6 +150,10 @@ private:
                                         : s.fill.claim_solid(s.tile, s.surface, interior);
         s.object_voxels[part.object] += claim.voxels;
         s.overlaps_itself[index] |= !claim.simple;
+        if (analysis.closed || (analysis.hole_caps && analysis.hole_caps->are_seams())) {
+            s.positive[part.object] |= claim.positive;
+            s.negative[part.object] |= claim.negative;
+        }
         if (has_holes && capped->hole_caps->opening > kNotedOpening) {
             s.shell_of_open[part.object] += claim.shell;
             s.inside_of_open[part.object] += claim.inside;

@@ -27,13 +27,15 @@ void tally_objects(const std::vector<PartView>& parts, std::vector<std::unique_p
         if (!s)
             continue;
         for (size_t i = 0; i < out.size(); ++i)
-            out[i].add({s->object_voxels[i], s->shell_of_open[i], s->inside_of_open[i], 0});
+            out[i].add(
+                {s->object_voxels[i], s->shell_of_open[i], s->inside_of_open[i], 0, s->positive[i], s->negative[i]});
         for (size_t p = 0; p < parts.size(); ++p)
             out[parts[p].object].overlaps_itself |= int64_t{s->overlaps_itself[p]};
         std::fill(s->object_voxels.begin(), s->object_voxels.end(), 0);
         std::fill(s->shell_of_open.begin(), s->shell_of_open.end(), 0);
         std::fill(s->inside_of_open.begin(), s->inside_of_open.end(), 0);
-        std::fill(s->overlaps_itself.begin(), s->overlaps_itself.end(), uint8_t{0});
+        for (std::vector<uint8_t>* met : {&s->overlaps_itself, &s->positive, &s->negative})
+            std::fill(met->begin(), met->end(), uint8_t{0});
     }
 }
 
@@ -67,6 +69,7 @@ void report_objects(const std::vector<PartView>& parts, const TriangleBins& bins
     }
     for (size_t i = 0; i < objects; ++i) {
         out.object_modes[i] = uint8_t(object_mode(fill_of[i], found[i]));
+        out.object_notes[i][kInwardParts] = tallies[i].positive != 0 && tallies[i].negative != 0;
         out.object_notes[i][kMostlyFilled] = tallies[i].inside_of_open > tallies[i].shell_of_open;
     }
 }

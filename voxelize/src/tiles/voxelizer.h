@@ -88,12 +88,15 @@ struct ObjectTally {
     int64_t voxels = 0;                            // that belong to it
     int64_t shell_of_open = 0, inside_of_open = 0; // of its parts with openings worth a note
     int64_t overlaps_itself = 0;                   // 0, or 1
+    int64_t positive = 0, negative = 0;            // 1 where winding numbers above 0, or below, were met
 
     void add(const ObjectTally& other) {
         voxels += other.voxels;
         shell_of_open += other.shell_of_open;
         inside_of_open += other.inside_of_open;
         overlaps_itself |= other.overlaps_itself;
+        positive |= other.positive;
+        negative |= other.negative;
     }
 };
 

@@ -16,7 +16,7 @@ from voxrt.cli.results.build_results import print_json
 from voxrt.cli.terminal.errors import UsageError
 from voxrt.cli.terminal.messages import budget_loss, budget_text, summarize, warn
 from voxrt.cli.terminal.progress import build_bar, stage_bar, transfer_bar
-from voxrt.export.outputs import check_folder, writing
+from voxrt.export.outputs import check_folder, check_output_folder, writing
 from voxrt.options.notations import find_board
 
 if TYPE_CHECKING:
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from voxrt.cli.results.bitstream_results import BitstreamResult, PlacedResult
     from voxrt.export import Blob
     from voxrt.options.board_commands import BitstreamCommand
+
+_SUFFIXES = (".bit", ".fs")
 
 
 def run(options: BitstreamCommand) -> None:
@@ -43,7 +45,7 @@ def run(options: BitstreamCommand) -> None:
 def _make_selftest(options: BitstreamCommand) -> None:
     from voxrt.boards.bitstream import find_loader, load_bitstream, pack  # noqa: PLC0415 - NumPy comes with it
 
-    check_folder(options.output.parent if _names_file(options.output) else options.output)
+    _check_output(options.output)
     if options.load:
         find_loader()
     placed = _place(_find_board(options.board), options.seed, rebuild=options.rebuild, selftest=True)
@@ -67,7 +69,7 @@ def _make_scene(options: BitstreamCommand, source: Path) -> None:
     from voxrt.boards.board_scenes import board_scene  # noqa: PLC0415
     from voxrt.views.viewpoint import orbit  # noqa: PLC0415
 
-    check_folder(options.output.parent if _names_file(options.output) else options.output)
+    _check_output(options.output)
     if options.load:
         find_loader()
     placed = _place(_find_board(options.board), options.seed, rebuild=options.rebuild)
@@ -95,8 +97,17 @@ def _make_scene(options: BitstreamCommand, source: Path) -> None:
         print_json(result)
 
 
+def _check_output(output: Path) -> None:
+    if _names_file(output):
+        check_folder(output.parent)
+    else:
+        check_output_folder(
+            output, "no format of bitstreams", f"name a file with one of {', '.join(_SUFFIXES)}, or a folder"
+        )
+
+
 def _names_file(output: Path) -> bool:
-    return output.suffix.lower() in {".bit", ".fs"} and not output.is_dir()
+    return output.suffix.lower() in _SUFFIXES and not output.is_dir()
 
 
 def _bits_file(output: Path, placed: PlacedBoard, stem: str) -> Path:

@@ -12,7 +12,7 @@ from voxrt.cli.results.build_results import print_json
 from voxrt.cli.results.memory_results import ConvertResult
 from voxrt.cli.terminal.errors import UsageError
 from voxrt.cli.terminal.messages import name_file, summarize
-from voxrt.export.outputs import check_folder, writing
+from voxrt.export.outputs import check_folder, check_output_folder, writing
 from voxrt.options.shared import PREVIEW_SIZE
 from voxrt.views.writers import PANE_WRITERS
 
@@ -29,9 +29,7 @@ def run(options: ConvertCommand) -> None:
     if material and is_asset(options.source):
         raise UsageError(f"--material is of node listings, and {options.source.name} has materials; leave it out")
     if options.form == "core":
-        if target.suffix.lower() in voxrt.WRITABLE_SUFFIXES:
-            raise UsageError(f"{target}: --form core writes several files; name a folder")
-        check_folder(target)
+        check_output_folder(target, "of a file, and --form core writes several", "name a folder")
         source = read_source(options.source, options.depth, options.from_dialect, material, frames=True)
         files = _write_core(source, target, options.config, options.size or PREVIEW_SIZE)
     else:

@@ -233,6 +233,30 @@ def test_what_emits_alone_shows_its_emission(tmp_path):
     assert seen(textured(material=grey), tmp_path / "c.glb") == GREEN[:3]
 
 
+@pytest.mark.parametrize(
+    ("strength", "colour", "clamped"), [(2.0, (255, 188, 0), 0), (8.0, (255, 255, 0), 1), (0.0, (0, 0, 0), 0)]
+)
+def test_the_strength_of_emission(strength, colour, clamped, tmp_path):
+    """Linear 0.25 of it is 188 of 255 at twice the strength; beyond the range each channel is clamped."""
+    strong = {"KHR_materials_emissive_strength": {"emissiveStrength": strength}}
+    lamp = {"pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1]}, "emissiveFactor": [0.5, 0.25, 0]}
+    writer = GltfWriter()
+    writer.add("materials", lamp | {"extensions": strong})
+    writer.show(mesh=writer.mesh(TRIANGLE, material=0))
+    scene = load(writer.save(tmp_path / "a.glb"))
+    assert scene.materials[1].colour == colour
+    assert kinds(scene).get("colour-range", 0) == clamped
+
+
+def test_vertex_colours_do_not_change_emission(tmp_path):
+    lamp = {"pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1]}, "emissiveFactor": [0, 0, 1]}
+    writer = GltfWriter()
+    writer.add("materials", lamp)
+    dark = writer.accessor(np.zeros((3, 3), np.float32))
+    writer.show(mesh=writer.mesh(TRIANGLE, material=0, COLOR_0=dark))
+    assert seen(writer, tmp_path / "a.glb") == BLUE[:3]
+
+
 def test_a_uniform_transparent_material_is_air_and_alone_refused(tmp_path):
     writer = GltfWriter()
     glass = {"alphaMode": "BLEND", "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.3]}}

@@ -1,0 +1,124 @@
+"""Closed parts of one object that touch at a vertex or an edge, with vertices on the edge, some inside out.
+
+Boxes on planes between voxels have as many voxels as their volume says.
+"""
+
+import numpy as np
+import pytest
+from oracles.voxels import dense
+
+import voxrt
+from voxrt.voxelize import Grid, voxelize
+
+QUADS = {
+    "x-": [0, 1, 3, 2],
+    "x+": [4, 6, 7, 5],
+    "y-": [0, 4, 5, 1],
+    "y+": [2, 3, 7, 6],
+    "z-": [0, 2, 6, 4],
+    "z+": [1, 5, 7, 3],
+}
+
+
+def box(low, high, split="", edge=(8, 8)):
+    """A box of 8 vertices; the face `split` has a ninth on the vertical edge, between its ends."""
+    corners = [[(low, high)[i >> 2][0], (low, high)[i >> 1 & 1][1], (low, high)[i & 1][2]] for i in range(8)]
+    positions = [*corners, [*edge, (low[2] + high[2]) / 2]]
+    triangles = []
+    for name, quad in QUADS.items():
+        face = list(quad)
+        if name == split:
+            on_edge = [tuple(positions[vertex][:2]) == edge for vertex in quad]
+            at = next(i for i in range(4) if on_edge[i] and on_edge[(i + 1) % 4])
+            face = [8, *quad[at + 1 :], *quad[: at + 1]]
+        triangles += [[face[0], face[i], face[i + 1]] for i in range(1, len(face) - 1)]
+    return np.array(positions, float), np.array(triangles)
+
+
+def cut_box(low, high, rng):
+    """A box whose faces are cut into rectangles, each face for itself, so that their corners stand on its edges."""
+    corners, _ = box(low, high)
+    positions, triangles = [], []
+    for quad in QUADS.values():
+        a, b, _, d = (corners[vertex] for vertex in quad)
+        u, v = (np.array([0, *sorted(set(rng.random(2).round(1)) - {0.0, 1.0}), 1]) for _ in range(2))
+        for i, j in np.ndindex(len(u) - 1, len(v) - 1):
+            ends = ((u[i], v[j]), (u[i + 1], v[j]), (u[i + 1], v[j + 1]), (u[i], v[j + 1]))
+            start = len(positions)
+            positions += [a + s * (b - a) + t * (d - a) for s, t in ends]
+            triangles += [[start, start + 1, start + 2], [start, start + 2, start + 3]]
+    return np.array(positions), np.array(triangles)
+
+
+def turned(part):
+    return part[0], part[1][:, ::-1]
+
+
+def built(*parts):
+    """Voxels of the parts as one mesh with shared vertices, in a grid of 16 voxels per side, and kinds of warnings."""
+    starts = np.cumsum([0, *(len(positions) for positions, _ in parts)])
+    positions, number = np.unique(np.concatenate([part[0] for part in parts]), axis=0, return_inverse=True)
+    triangles = np.concatenate([triangles + start for (_, triangles), start in zip(parts, starts, strict=False)])
+    scene = voxrt.mesh_scene(positions, number.reshape(-1)[triangles])
+    result = voxelize(scene, Grid(4, (0.0, 0.0, 0.0), 1.0))
+    return int((dense(result.voxels) != 0).sum()), {warning.kind: warning.count for warning in result.warnings}
+
+
+LOW, BESIDE, ABOVE = ([0, 0, 0], [8, 8, 8]), ([8, 8, 0], [16, 16, 8]), ([8, 8, 8], [14, 14, 14])
+
+
+@pytest.mark.parametrize("first", ["", "x+", "y+"])
+@pytest.mark.parametrize("second", ["", "x-", "y-"])
+@pytest.mark.parametrize("inside_out", [None, 0, 1])
+def test_parts_that_share_an_edge(first, second, inside_out):
+    """What cannot be told from a surface that crosses the edge is kept, and named."""
+    parts = [box(*LOW, first), box(*BESIDE, second)]
+    if inside_out is not None:
+        parts[inside_out] = turned(parts[inside_out])
+    voxels, warned = built(*parts)
+    crosses = (first[:1], second[:1]) in {("x", "x"), ("y", "y")}
+    if inside_out is None:
+        assert (voxels, warned) == (1024, {})
+    elif crosses:
+        assert (voxels > 1024, warned) == (True, {"inward-parts": 1})
+    else:
+        assert voxels == 1024
+        assert set(warned) == {"turned-faces"}
+
+
+@pytest.mark.parametrize("inside_out", [0, 1])
+def test_parts_that_share_a_vertex_are_named_where_one_is_inside_out(inside_out):
+    parts = [box(*LOW), box(*ABOVE)]
+    assert built(*parts) == (512 + 216, {})
+    assert built(*(turned(part) for part in parts)) == (512 + 216, {})
+    parts[inside_out] = turned(parts[inside_out])
+    voxels, warned = built(*parts)
+    assert warned == {"inward-parts": 1}
+    assert voxels > 512 + 216
+
+
+def test_cavities_that_touch_the_wall_at_a_vertex_stay():
+    corners = np.array([[16, 16, 16], [2, 6, 6], [6, 2, 6], [6, 6, 2]], float)
+    inwards = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
+    voxels, warned = built(box([0, 0, 0], [16, 16, 16]), (corners, inwards))
+    assert (0 < 16**3 - voxels < np.linalg.det(corners[1:] - corners[0]) / -6, warned) == (True, {})
+    assert built(box([0, 0, 0], [16, 16, 16]), turned(box([2, 2, 2], [14, 14, 14]))) == (16**3 - 12**3, {})
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_boxes_with_seams_some_inside_out_are_solid(seed):
+    """What the voxels do not show right is named."""
+    rng = np.random.default_rng(seed)
+    taken = np.zeros((16, 16, 16), bool)
+    parts = []
+    for _ in range(6):
+        low = rng.integers(0, 12, 3)
+        high = np.minimum(low + rng.integers(2, 8, 3), 16)
+        place = tuple(slice(*ends) for ends in zip(low, high, strict=True))
+        if not taken[place].any():
+            taken[place] = True
+            part = cut_box(low.tolist(), high.tolist(), rng)
+            parts.append(turned(part) if rng.random() < 0.4 else part)
+    voxels, warned = built(*parts)
+    assert voxels == taken.sum() or warned
+    assert set(warned) <= {"turned-pieces", "turned-faces", "inward-parts"}
