@@ -58,7 +58,7 @@ def test_the_self_test_of_a_gowin_is_a_bitstream_already(voxrt, folder):
     result = voxrt.json("bitstream", "--board", "tang-nano-20k", "--selftest", "-o", "out")
     assert result["bitstream"] == "out/tang-nano-20k-selftest.fs"
     assert (result["clock_hz"], result["seed"]) == (75_600_000, 1)
-    assert Path(folder, result["bitstream"]).read_text().startswith("//")
+    assert set(Path(folder, result["bitstream"]).read_text().split()[0]) == {"1"}
 
 
 def test_boards_without_a_design_are_refused(voxrt):

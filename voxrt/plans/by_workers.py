@@ -13,6 +13,7 @@ from voxrt.plans.open_workers import open_workers
 from voxrt.plans.tile_store import TileStore, sum_tallies
 from voxrt.plans.tile_tasks import TileJob, block_voxelizer, inherited_scene, make_tile, merge_tiles, tiles_key
 from voxrt.sources.source import open_source
+from voxrt.voxelize.block_voxelizer import TALLIES
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -79,7 +80,7 @@ def run_by_workers(
         ):
             blocks = voxelizer.blocks(store.claim(key, cluster_side(voxelizer, plan, workers.count)))
             tiles = _made(workers, job, {block: voxelizer.objects_of(block) for block in blocks}, clustered)
-    rows = [np.zeros((0, 5), np.int64), *(tile.tallies for tile in tiles)]
+    rows = [np.zeros((0, 1 + TALLIES), np.int64), *(tile.tallies for tile in tiles)]
     report = voxelizer.report(sum_tallies(np.concatenate(rows), len(scene.objects)))
     del voxelizer  # to make room for the blocks
     with clock.stage("octree"):

@@ -55,9 +55,6 @@ public:
 
     /// Whether all numbers since construction were 0 and 1, or 0 and -1.
     bool simple() const { return overlap_ == 0 && (positive_ == 0 || negative_ == 0); }
-    /// Whether some number since construction was above 0, or below.
-    bool was_positive() const { return positive_ != 0; }
-    bool was_negative() const { return negative_ != 0; }
 
 private:
     static constexpr int kPlanes = 32;

@@ -27,11 +27,13 @@ struct Claim {
     int64_t shell = 0;                       // voxels of the shell, whoever has them
     int64_t inside = 0;                      // voxels that the shell encloses, whoever has them
     bool simple = true;                      // all winding numbers were 0 and 1, or 0 and -1
-    bool positive = false, negative = false; // whether some winding number was that caps do not change
+    bool positive = false, negative = false; // whether a voxel without shell has such a winding number
 
-    void add(const ColumnWinding& winding) {
-        positive = positive || winding.was_positive();
-        negative = negative || winding.was_negative();
+    /// `shell`: columns whose winding numbers do not count.
+    void note(const ColumnWinding& winding, uint64_t shell) {
+        const uint64_t below = winding.below_zero();
+        positive = positive || (winding.inside() & ~below & ~shell) != 0;
+        negative = negative || (below & ~shell) != 0;
     }
 };
 
@@ -129,12 +131,14 @@ private:
             if (brick == nullptr) {
                 const int end = k > highest ? object.height() : object.next_brick(column, k, highest);
                 claim_run(tile, column, k, end, winding.inside(), interior, result);
+                result.note(winding, 0);
                 summed = 0;
                 k = end;
                 continue;
             }
             Slices within{};
-            const Slices surface = has_volumes ? object.all_surface(*brick, slices_of(brick->shell)) : Slices{};
+            const Slices shell = slices_of(brick->shell);
+            const Slices surface = has_volumes ? object.all_surface(*brick, shell) : Slices{};
             const Crossings crossings(*brick);
             const uint32_t index = object.index_of(*brick);
             const VolumePieces* pieces = brick->pieces == kNone ? nullptr : &object.pieces(brick->pieces);
@@ -146,6 +150,7 @@ private:
                 summed = surface[z];
                 advance(winding, crossings, index, brick->has_repeated, z);
                 within[z] = winding.inside();
+                result.note(winding, shell[z]);
                 add_volumes(pieces ? pieces->slice(z) : nullptr, surface[z], volumes, z);
             }
             if (const double* carried = pieces ? pieces->slice(kBrickSide) : nullptr)
@@ -154,7 +159,6 @@ private:
             ++k;
         }
         result.simple = result.simple && winding.simple();
-        result.add(winding);
     }
 
     /// Adds to `below_` what pieces of a brick add to the brick above. Returns the columns that are summed: those that
@@ -245,11 +249,8 @@ private:
                 within[z] = kind == GeneralizedInside::Class::inside   ? ~uint64_t{0}
                             : kind == GeneralizedInside::Class::capped ? winding.inside()
                                                                        : 0;
-                if (kind == GeneralizedInside::Class::capped) {
-                    const uint64_t below = winding.below_zero();
-                    result.negative = result.negative || below != 0;
-                    result.positive = result.positive || winding.inside() != below;
-                }
+                if (kind == GeneralizedInside::Class::capped) // caps do not change these
+                    result.note(winding, surface[z]);
                 for (int bit = 0; mixed && bit < 64; ++bit)
                     numbers_[z * 64 + bit] = winding.at(bit);
             }
