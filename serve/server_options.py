@@ -20,7 +20,7 @@ class Limits:
     strangers_per_address
         Connections of one address at the same time that have not shown the token.
     new_connections_per_address_and_second
-        On average; a burst may have twice as many.
+        On average; a burst may have twice as many. Each load of the page makes about 40, one per file.
     frames_per_second, bytes_per_second
         What is read of a connection, on average; a burst may have twice as many. The rest waits. Frames are those of
         WebSocket: messages, their fragments, pings and pongs.
@@ -43,7 +43,7 @@ class Limits:
     connections: int = 256
     new_clients_per_second: float = 20
     strangers_per_address: int = 64
-    new_connections_per_address_and_second: float = 50
+    new_connections_per_address_and_second: float = 200
     frames_per_second: float = 400
     bytes_per_second: float = 1 << 24
     text_bytes_per_second: float = 1 << 17
