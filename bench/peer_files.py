@@ -1,4 +1,10 @@
-"""Programs that turn a file into a file of voxels, for peers.py: whole processes, in turns, on a scan as GLB."""
+"""Programs that turn a file into a file of voxels, side by side: whole processes, in turns, on a scan as GLB.
+
+Usage: ``python bench/peer_files.py [--runs N] [--write]``. The skull by voxrt, and by voxquant and MeshLib where
+``python bench/acid.py`` has installed them. Wants the assets (CONTRIBUTING.md) and a machine that does nothing else.
+Figures are medians of runs in turns; a run of more time or memory than allowed is named so. ``--write`` writes
+``bench/results/peer_files.md``.
+"""
 
 from __future__ import annotations
 
@@ -7,11 +13,12 @@ import shutil
 import statistics
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from peer_process import Ended, run_confined
-from report import ROOT, table
+from report import ROOT, machine, options_of, publish, table
 
 from voxelize import SKULL
 
@@ -21,7 +28,7 @@ if TYPE_CHECKING:
 ENVIRONMENT = ROOT / "build" / "acid" / "bin"
 """Where ``python bench/acid.py`` puts the tools."""
 MESHLIB = Path(__file__).with_name("peer_meshlib.py")
-DEPTHS = (8, 9, 10, 11)
+DEPTHS = (8, 9, 10, 11, 12)
 # In a process of its own: what a process has in memory counts for those that it starts, too.
 EXPORT = "import sys, trimesh; m = trimesh.load(sys.argv[1], process=False); m.export(sys.argv[2]); print(len(m.faces))"
 
@@ -40,17 +47,14 @@ def programs() -> tuple[dict[str, tuple[str, list[str | Path]]], list[str]]:
 
 
 def race(folder: Path, options: argparse.Namespace) -> str:
-    """Return a section with the medians of each program at each depth."""
-    if not SKULL.exists():
-        print(f"no race of programs: {SKULL} is not there", file=sys.stderr)
-        return ""
+    """Return a page with the medians of each program at each depth."""
     found, absent = programs()
     for name in absent:
         print(f"{name} is left out: it is not here; python bench/acid.py installs it", file=sys.stderr)
     scan = folder / "scan.glb"
     exported = subprocess.run([sys.executable, "-c", EXPORT, SKULL, scan], check=True, capture_output=True, text=True)
     cells: dict[str, list[str]] = {name: [] for name in found}
-    for depth in sorted(set(options.depths) & set(DEPTHS)):
+    for depth in DEPTHS:
         runs: dict[str, list[Ended | str]] = {name: [] for name in found}
         for _ in range(options.runs):  # in turns, so that a busy machine slows all of them
             for name, (_, command) in found.items():
@@ -59,13 +63,13 @@ def race(folder: Path, options: argparse.Namespace) -> str:
         for name in found:
             cells[name].append(cell(runs[name]))
             print(f"scan.glb {2**depth}³ {name}: {cells[name][-1]}", file=sys.stderr, flush=True)
-    sides = [f"{2**depth}³" for depth in sorted(set(options.depths) & set(DEPTHS))]
+    sides = [f"{2**depth}³" for depth in DEPTHS]
     rows = [(name, found[name][0], *cells[name]) for name in found]
     about = (
-        "From file to file: seconds of the whole process / peak memory. The skull, "
-        f"{int(exported.stdout):,} triangles; medians of {options.runs}, in turns."
+        f"{machine()}. The skull, {int(exported.stdout):,} triangles as GLB: seconds of the whole process / peak "
+        f"memory, medians of {options.runs} in turns, at most {options.seconds:g} s and {options.gigabytes:g} GB a run."
     )
-    return f"\n## A scan as GLB\n\n{about}\n\n{table(('program', 'makes', *sides), rows)}"
+    return f"# From a scan's file to voxels\n\n{about}\n\n{table(('program', 'makes', *sides), rows)}"
 
 
 def once(command: list[str | Path], scan: Path, depth: int, folder: Path, options: argparse.Namespace) -> Ended | str:
@@ -83,3 +87,19 @@ def cell(runs: list[Ended | str]) -> str:
     ended = [run for run in runs if isinstance(run, Ended)]
     wall, peak = (statistics.median(getattr(run, key) for run in ended) for key in ("wall", "peak"))
     return f"{wall:.3f} / {peak:,.0f} MB"
+
+
+def main() -> None:
+    parser = options_of(__doc__)
+    parser.add_argument("--runs", type=int, default=5)
+    parser.add_argument("--seconds", type=float, default=90)
+    parser.add_argument("--gigabytes", type=float, default=8)
+    options = parser.parse_args()
+    if not SKULL.exists():
+        sys.exit(f"{SKULL} is not there")
+    with tempfile.TemporaryDirectory() as folder:
+        publish("peer_files.md", race(Path(folder), options), write=options.write)
+
+
+if __name__ == "__main__":
+    main()

@@ -2,10 +2,9 @@
 
 Usage: ``pip install --group bench``, then ``python bench/peers.py [--write]``; ``--help`` tells how often and how long.
 Meshes: generated displaced spheres of 70 k and 810 k triangles, and the skull where the assets are there. Depths 7 to
-10, and to 12 for voxrt. Then programs from file to file: the skull as GLB by voxrt, and by voxquant and MeshLib where
-``python bench/acid.py`` has installed them. Figures are medians of the runs; a run that takes more time or memory than
-allowed is told as such, and greater depths of it are left out. ``--write`` puts the tables into
-``bench/results/peers.md`` and plots into ``docs/pictures/peers.svg`` as well.
+10, and to 12 for voxrt. Figures are medians of the runs; a run that takes more time or memory than allowed is told as
+such, and greater depths of it are left out. ``--write`` puts the tables into ``bench/results/peers.md`` and plots into
+``docs/pictures/peers.svg`` as well.
 """
 
 from __future__ import annotations
@@ -21,7 +20,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from peer import MAKES, TOOLS
-from peer_files import race
 from peer_process import run_confined
 from report import ROOT, machine, options_of, publish, table
 
@@ -167,9 +165,7 @@ def main() -> None:
                     print(f"{mesh} {2**depth}³ {tool}: {_cell(runs[-1])}", file=sys.stderr, flush=True)
                     if runs[-1].failure:
                         break
-        programs = race(Path(folder), options)
-    text = tables(runs, options) + programs
-    publish("peers.md", "# Beside other voxelizers\n\n" + text, write=options.write)
+    publish("peers.md", "# Beside other voxelizers\n\n" + tables(runs, options), write=options.write)
     if options.json:
         options.json.write_text(json.dumps([asdict(run) for run in runs], indent=2) + "\n")
     if options.write:
