@@ -23,6 +23,7 @@ from voxrt.board.view_check import check_view
 from voxrt.octree import Octree, solid_bounds
 from voxrt.octree.words import EMPTY
 from voxrt.serve.packets import FramePacket
+from voxrt.sim.backgrounds import background_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -339,7 +340,7 @@ class Renderer:
 
     def _view_of(self, scene: Scene, size: tuple[int, int]) -> View:
         camera = refit(scene.camera, DEFAULT_SIZE, size) if scene.camera else frame_world(scene.depth, size)
-        view = replace(self.view, camera=camera, size=size, background=scene.background, frame=0)
+        view = replace(self.view, camera=camera, size=size, background=background_of(scene.background), frame=0)
         lighting = scene.lighting
         if lighting is None:
             side, farthest = 16 << scene.depth, self.device.identity.position_limit - 1

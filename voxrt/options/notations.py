@@ -9,6 +9,7 @@ from os import PathLike
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from voxrt.options.kinds import FLAG, Kind, as_it_is, exact, file, plain, read_whole, several, show
+from voxrt.sim.backgrounds import BACKGROUNDS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -173,9 +174,6 @@ def _read_pixel(text: str) -> tuple[int, int]:
 
 PIXEL = Kind("X,Y", _read_pixel, as_it_is)
 """Column and row of a pixel."""
-
-BACKGROUNDS: dict[str, tuple[int, int, int]] = {"dark": (24, 28, 36), "light": (236, 240, 244)}
-"""Named colours, sRGB. ``"transparent"`` is a background too: it suits pages of any colour."""
 
 
 def read_background(name: str, value: object) -> Background:

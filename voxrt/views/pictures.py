@@ -13,13 +13,12 @@ from voxrt.export import Blob
 from voxrt.export.outputs import check_file, writing
 from voxrt.octree import Rom
 from voxrt.octree.camera import refit
-from voxrt.options.notations import BACKGROUNDS
 from voxrt.options.option import merge
 from voxrt.options.render_options import RenderOptions
 from voxrt.options.shared import PREVIEW_SIZE
+from voxrt.sim.backgrounds import background_of
 from voxrt.sim.image import save_png
 from voxrt.views.viewpoint import aim_camera
-from voxrt.voxelize import EMPTY
 from voxrt.voxelize.arguments import instance, whole_array
 
 if TYPE_CHECKING:
@@ -155,7 +154,6 @@ def preview(
     >>> preview(blob, voxrt.animation_camera(blob, (64, 48)), (64, 48))
     <Picture: 64x48 pixels, 5 materials, by model>
     """
-    has_background = blob.rom.materials[0].colour != EMPTY.colour
     frame = render(
         blob.rom,
         camera,
@@ -164,7 +162,7 @@ def preview(
         config=config_of(blob.lighting),
         lighting=blob.lighting,
         samples=samples or (1 if engine == "rtl" else _SAMPLES),
-        background=background or (None if has_background else BACKGROUNDS["light"]),
+        background=background or background_of(blob.rom.materials[0].colour),
         threads=threads,
         progress=progress,
     )
