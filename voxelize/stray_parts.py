@@ -23,8 +23,8 @@ _NARROW = 1 / 8
 
 _BINS = 64
 _BULK_BINS = int(_BINS * _NARROW / 2) + 1
-_SURELY_LESS = 2 * _NEARLY_ALL - 1.001
-"""Between the quantiles of both ends lies more of the surface, whatever is rounded."""
+_LEAST_BETWEEN = 2 * _NEARLY_ALL - 1.001
+"""The share of the surface between the quantiles of both ends is larger, whatever is rounded."""
 
 _ENOUGH = 100_000
 """Triangles that tell whether a scene is wide, as nearly all are."""
@@ -178,13 +178,13 @@ def _bulk_ends(corners: NDArray[np.float64], width: float) -> tuple[NDArray[np.f
 
 
 def _may_be_narrow(middles: NDArray[np.float64], area: NDArray[np.float64], width: float) -> bool:
-    """Tell whether nearly all of the surface may lie within half of what is narrow: the other half is room.
+    """Tell whether _bulk_ends may find a narrow bulk on this axis: without its room, half as wide as is narrow.
 
-    The surface is counted in bins, of which a narrow bulk meets _BULK_BINS at most. That takes less than to sort it.
+    The area is added up in bins. Such a bulk meets at most _BULK_BINS of them. This is faster than sorting.
     """
     bins = ((middles - middles.min()) * (_BINS / width)).astype(np.int64)
     sums = np.append(0.0, np.cumsum(np.bincount(bins, area, _BINS + _BULK_BINS)))
-    return bool((sums[_BULK_BINS:] - sums[:-_BULK_BINS]).max() >= _SURELY_LESS * sums[-1])
+    return bool((sums[_BULK_BINS:] - sums[:-_BULK_BINS]).max() >= _LEAST_BETWEEN * sums[-1])
 
 
 def _strays(

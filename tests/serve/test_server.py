@@ -20,6 +20,7 @@ from voxrt.boards.board_scenes import asset_reader
 from voxrt.serve.clients import Client
 from voxrt.serve.frame_client import open_client
 from voxrt.serve.packets import CHUNK_LIMIT
+from voxrt.serve.page_files import load_page_files
 from voxrt.serve.scene_library import SceneLibrary
 from voxrt.serve.server import FrameServer
 from voxrt.serve.server_options import Limits, ServerOptions
@@ -308,3 +309,9 @@ async def test_backlog_of_answers():
     assert len(client._answers) == 256
     assert client.dropped_frames == 999
     sending.cancel()
+
+
+def test_who_loads_the_page_five_times_at_once_is_served():
+    """Each file is a connection of its own, and so is the viewer."""
+    burst = 2 * Limits().new_connections_per_address_and_second
+    assert burst >= 5 * (len(load_page_files()) + 1)
