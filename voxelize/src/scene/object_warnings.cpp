@@ -41,8 +41,8 @@ std::vector<ObjectWarning> object_warnings(const VoxelizedObjects& objects) {
     if (open > 0)
         warnings.push_back(
             {"open-surface",
-             "open objects, like a room without a front, were not filled: close them, give them colliders, or fill "
-             "those that close one another as one by --fill together",
+             "open objects, like a room without a front, were not filled: close them, give them colliders, or take "
+             "--fill together where they close one another",
              open});
     if (!mostly_filled.empty()) {
         const size_t others = mostly_filled.size() - 1;
