@@ -15,6 +15,7 @@ from voxrt.octree.piece import Piece
 from voxrt.octree.query import as_box, as_corner, as_points
 from voxrt.octree.rom import Rom
 from voxrt.octree.shapes import Shape, change_shape
+from voxrt.octree.words import EMPTY
 from voxrt.octree.world_figures import WorldFigures
 from voxrt.octree.world_materials import add_missing
 from voxrt.voxelize import DoesNotFitError, Material
@@ -79,7 +80,7 @@ class World:
     """
 
     def __init__(self, rom: Rom, *, words: int | None = None, undo_steps: int = 100, root: int | None = None) -> None:
-        self._rom = instance("rom", rom, Rom)
+        instance("rom", rom, Rom)
         self._limit = _MOST_WORDS if words is None else whole("words", words, 1, _MOST_WORDS)
         steps = whole("undo_steps", undo_steps, 0, 1_000_000)
         present = rom.octree.words
@@ -92,6 +93,8 @@ class World:
             )
         self._author = 0
         self._native = _native.World(rom.octree.words, rom.octree.depth, self._limit, steps, root)
+        self._depth, self._has_means = rom.octree.depth, rom.octree.means is not None
+        self._rom = replace(rom, octree=Octree(self._depth, np.array([EMPTY], np.uint32)))  # all but the voxels
 
     def __repr__(self) -> str:
         return f"<World {self._rom.name!r}: depth {self.depth}, {8 * self.figures().blocks + 1:,} words>"
@@ -104,7 +107,7 @@ class World:
     @property
     def depth(self) -> int:
         """Levels below the root: the world has 2**depth voxels per side."""
-        return self._rom.octree.depth
+        return self._depth
 
     @property
     def size(self) -> int:
@@ -313,7 +316,7 @@ class World:
         Blocks have mean materials if those of the memory to begin with had some.
         """
         rom = replace(self._rom, octree=Octree(self.depth, self._native.words()), materials=self.materials)
-        return rom if self._rom.octree.means is None else with_means(rom)
+        return with_means(rom) if self._has_means else rom
 
     def commit(self) -> Patch:
         """Make the octree as it is a live root, and return what memories that show this world must write.
@@ -326,7 +329,7 @@ class World:
         ValueError
             The memory has mean materials. They depend on neighbours: build it without level of detail.
         """
-        if self._rom.octree.means is not None:
+        if self._has_means:
             raise ValueError(
                 f"{self._rom.name} has mean materials, which depend on neighbours: patches cannot have them; build it "
                 "without level of detail"

@@ -313,11 +313,11 @@ class Renderer:
         self._memory.check(scene)  # before anything else looks at its words
         return solid_bounds(Octree(scene.depth, scene.words))
 
-    def _render(self, view: View, drop: FrameDrop | None = None) -> Frame:
+    def _render(self, view: View, drop: FrameDrop | None = None, seconds: float | None = None) -> Frame:
         if view.frame != self._shown_frame:
             self._memory.select_frame(view.frame)
             self._shown_frame = view.frame
-        return self.device.frame(view, self.device.identity.frame_seconds(view.size), drop)
+        return self.device.frame(view, seconds or self.device.identity.frame_seconds(view.size), drop)
 
     def _render_first(self, scene: Scene, progress: Progress) -> None:
         progress("render", 0, 1)
@@ -328,7 +328,8 @@ class Renderer:
             frame = self._render(view)
         except TooSlow:
             view = self._view_of(scene, _smaller_size(size, self.device.identity.width_step))
-            frame = self._render(view)
+            # All other viewers wait meanwhile.
+            frame = self._render(view, seconds=self.device.identity.frame_seconds(size) / _SMALLER)
         self._first_frame = view, frame
 
     async def _on_device(self, call: Callable[[], Result]) -> Result:

@@ -16,9 +16,7 @@ bool CountedBlocks::load(const Memory& memory, std::optional<std::size_t> place)
     std::copy_n(memory.words, memory.size, words_->data());
     counts_.assign(blocks, 0);
     written_.assign(blocks, 1);
-    do
-        grow_table();
-    while (slots_.size() < 2 * blocks);
+    grow_table();
     kept_.clear();
     retain(memory.root());
     if (!take_over(memory.root()))
@@ -56,7 +54,8 @@ bool CountedBlocks::take_over(Word word) {
         if (slots_[slot].number != kFree || (is_leaf(below[0]) && is_uniform(below)))
             return false;
         slots_[slot] = {tag, static_cast<Word>(block_number(block))};
-        ++filled_;
+        if (2 * ++filled_ > slots_.size())
+            grow_table();
         for (const Word child : below) {
             if (is_leaf(child))
                 continue;
