@@ -5,13 +5,13 @@ import random
 import cocotb
 import numpy as np
 from cocotb.triggers import RisingEdge
-from core_driver import COLOURS, Core
+from core_driver import COLOURS, LOADED, Core
 from oracles import lod, ray
 from oracles.memory import words_of
 from oracles.random_cameras import random_camera
 
 SIZE = (9, 7)
-NUMBERS = (0, 1, 2, 255)
+NUMBERS = (0, *LOADED)
 
 
 def some_scene(chance):
@@ -22,6 +22,12 @@ def some_scene(chance):
     means = chance.choice(NUMBERS, len(words) // 8).astype(np.uint8)
     leaves = words >> 31 == 1
     return depth, words, means, np.where(leaves, words, words >> 3 << 8 | means[np.where(leaves, 0, words) >> 3])
+
+
+def scales_of(chance, camera):
+    """Make scales with which a ray through the corner of the picture reaches up to 64 voxels, if it is long enough."""
+    largest = int(np.abs(ray.directions(camera, *SIZE)[0, 0]).max())
+    return np.minimum((chance.integers(0, 64, 4) << 20) // max(largest, 1) + 1, (1 << 20) - 1)
 
 
 async def read_back(dut, count):
@@ -50,7 +56,9 @@ async def pixels_are_the_oracles(dut):
         camera = np.asarray(random_camera(chance, 1 << depth))
         limit = 1 << int(dut.PositionBits.value) - 1
         camera[0] = np.clip(camera[0], -limit, limit - 1)
-        scale = int(chance.choice([0, 1, *chance.integers(1, 1 << chance.integers(2, 21), 6)]))
+        scale = int(
+            chance.choice([0, 1, *chance.integers(1, 1 << chance.integers(2, 21), 2), *scales_of(chance, camera)])
+        )
         await core.write("lod", words=1, scale=scale)
         await core.load(lod_words)
         assert await read_back(dut, 9) == lod_words[:9].tolist()

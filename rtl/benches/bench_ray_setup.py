@@ -4,7 +4,7 @@ import random
 
 import cocotb
 from cocotb.triggers import ClockCycles, RisingEdge
-from rays import FACE_NONE, aimed_direction, ray_of, some_direction
+from rays import FACE_NONE, aimed_direction, edge_direction, ray_of, some_direction
 from streams import drive, pace, reset, start
 from structs import DISTANCE, RAY, SHADOW_POINT, WEIGHT, WORLD, packed_array, signed, unpacked_array
 
@@ -104,7 +104,7 @@ async def frame(dut, count, kind):
             await RisingEdge(dut.clk_i)
             continue
         lane, tag, shadow = 1 << random.randrange(LANES), random.randrange(256), light and random.random() < 0.3
-        away = random.choice([some_direction(), aimed_direction(position, side)])
+        away = random.choice([some_direction(), aimed_direction(position, side), edge_direction(position, side)])
         point, direction = some_shadow(side) if shadow else (position, away)
         ray = ray_of(point, direction, side, unit=32 if shadow else 16, inside=shadow)
         wanted.append(expected(ray, lane, tag, shadow, KEY_BITS + light))

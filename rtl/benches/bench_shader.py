@@ -116,6 +116,17 @@ async def colours(dut, sending, taking):
 
 
 @cocotb.test()
+async def breaks_fill_all_places(dut):
+    """No pixel is lost where the output waits for so long that all credits are used."""
+    table = await prepare(dut)
+    for _ in range(15):
+        frame = (*some_frame()[:3], 10, 8)
+        items, wanted = some_pixels(frame, table, flat=False, faces=None, kinds=kinds_of(dut))
+        await begin(dut, frame)
+        assert await exchange(dut, items, lambda: seen(dut), "always", "with long breaks", **OUTPUT) == wanted
+
+
+@cocotb.test()
 async def reset_at_any_clock(dut):
     """Begin again after it; the material table stays."""
     table = await prepare(dut)

@@ -11,6 +11,7 @@ from streams import start_clock
 from voxrt_registers import MATERIALS, REGISTERS
 
 COLOURS = np.random.default_rng(4).integers(0, 256, (256, 3), dtype=np.uint8)
+LOADED = (1, 2, 4, 8, 16, 32, 64, 128, 255)  # Materials whose colours the core knows.
 MIRRORS = frozenset({2, 255})
 CAMERA = np.array([[-60, 150, -70], [90, -70, 100], [9, 0, -9], [1, 9, 2]], np.int32)
 
@@ -42,9 +43,9 @@ class Core:
         await ClockCycles(dut.clk_i, 2)
         self.words = []
         cocotb.start_soon(self.collect())
-        for material, (red, green, blue) in enumerate(COLOURS.tolist()):
-            if material in {0, 1, 2, 255}:
-                await self.axi.write_dword(MATERIALS + 4 * material, red << 16 | green << 8 | blue)
+        for material in (0, *LOADED):
+            red, green, blue = COLOURS[material].tolist()
+            await self.axi.write_dword(MATERIALS + 4 * material, red << 16 | green << 8 | blue)
 
     async def collect(self):
         """Take words off the stream as `ready` says; what is offered must stay until it is taken."""

@@ -56,6 +56,13 @@ def some_direction():
     return direction
 
 
+def edge_direction(position, side):
+    """Make a direction from a position, 1/16 voxel, to an edge of the world: both planes are crossed at once."""
+    aims = [0 if place < 0 else 16 * side for place in position]
+    aims[random.randrange(3)] = random.randint(0, 16 * side)
+    return [aim - place for aim, place in zip(aims, position, strict=True)]
+
+
 def aimed_direction(position, side):
     """Make a direction from a position, 1/16 voxel, to a point in the world, or near its planes and edges."""
     near = random.randint(-1, 1)

@@ -12,6 +12,10 @@ PACES = {"sending": ["always", "random"], "taking": ["always", "random"]}
 
 def pace(kind):
     """Give for each clock whether a side is there."""
+    if kind == "with long breaks":
+        return itertools.chain.from_iterable(
+            itertools.repeat(there, random.randint(200, 300)) for there in itertools.cycle((1, 0))
+        )
     return itertools.repeat(1) if kind == "always" else iter(lambda: random.randrange(2), 2)
 
 

@@ -23,7 +23,7 @@ PROOFS = {
     "voxrt_pixel_buffer": ("bmc", 17),
     "voxrt_pixel_packer": ("bmc", 9),
     "voxrt_registers": ("bmc", 11),
-    "voxrt_axi_read_master": ("bmc", 10),
+    "voxrt_axi_read_master": ("bmc", 12),
     "voxrt_miss_list": ("bmc", 11),
     "voxrt_l1_cache": ("bmc", 35),
 }

@@ -122,7 +122,7 @@ module voxrt_axi_read_master_properties
     if (recover_i) reason_q <= 1'b0;
     if (fail_i || bus_error_o || bus_timeout_o) reason_q <= 1'b1;
     silence_q <= silence_q + 1'b1;
-    if (rvalid_i || asks || owed_count_q == '0) silence_q <= '0;
+    if (rvalid_i || asks || (owed_count_q == '0 && !request_valid_i)) silence_q <= '0;
     if (!rst_ni || clear_i) begin
       reason_q  <= 1'b0;
       silence_q <= '0;
@@ -158,8 +158,29 @@ module voxrt_axi_read_master_properties
 
   always_comb if (started_q) assert (waited_q <= (TimeoutBits + 2)'(2 ** TimeoutBits + 1));
 
+  // Failures and clears after which the slave owes nothing: the first request after them gets its line. So does the
+  // second one in a row.
+  logic after_failure_q, after_clear_q;
+  logic [1:0] asked_q, lines_q;
+
+  always_ff @(posedge clk_i) begin
+    if (asks && asked_q != '1) asked_q <= asked_q + 1'b1;
+    if (answers && !answer_failed_o && lines_q != '1) lines_q <= lines_q + 1'b1;
+    if (!rst_ni || clear_i || fail_i || bus_error_o || bus_timeout_o) begin
+      after_failure_q <= rst_ni && !clear_i && fail_i && !request_valid_i && !axi_o.arvalid && count_q == '0;
+      after_clear_q   <= rst_ni && clear_i && !request_valid_i && !axi_o.arvalid && count_q == 3'd1 && gives && beat_q == 2'd3;
+      asked_q <= '0;
+      lines_q <= '0;
+    end
+  end
+
   always_ff @(posedge clk_i) begin
     cover (started_q && answers && answer_failed_o && count_q != '0);
     cover (started_q && answers && !answer_failed_o);
+    cover (started_q && answers && !answer_failed_o && gives);
+    cover (started_q && answers && !answer_failed_o && lines_q == 2'd1);
+    cover (started_q && answers && !answer_failed_o && after_failure_q && asked_q == 2'd1);
+    cover (started_q && answers && !answer_failed_o && after_clear_q && asked_q == 2'd1);
+    cover (started_q && bus_timeout_o);
   end
 endmodule
