@@ -69,8 +69,16 @@ REASONS = {
         "the memory reads where nobody asks: power alone"
     ),
     "banked_memory common/voxrt_block_ram.sv:41 const1 at EN[0]": ("the memory reads where nobody asks: power alone"),
-    "banked_memory memory/voxrt_banked_memory.sv:101 const1 at A[0]": (
+    "banked_memory memory/voxrt_banked_memory.sv:115 const1 at A[0]": (
         "which of the lanes that want a bank goes first; the other asks again"
+    ),
+    "banked_memory memory/voxrt_banked_memory.sv:121 inv at Q[0]": (
+        "which of the lanes that want a bank goes first; the other asks again"
+    ),
+    "ray_setup rays/voxrt_ray_setup.sv:321 inv at B[0]": "whether a plane is ahead counts on dead axes alone",
+    "plane_time common/voxrt_plane_time.sv:68 inv at WR_EN[51]": "bit 56 of a time of 55 bits; unread",
+    "brightness shading/voxrt_brightness.sv:149 inv at Y[2]": (
+        "bit 2 of a product of 50 bits, which a brightness of 8 bits shows for few"
     ),
 }
 
