@@ -17,7 +17,7 @@ NUMBERS = (0, *LOADED)
 def some_scene(chance):
     """Make a random world with a random mean material for each block, and its words in both dialects."""
     depth = int(chance.integers(2, 4))
-    voxels = chance.choice([0, 0, 0, 0, 1, 2, 255], (1 << depth,) * 3).astype(np.uint8)
+    voxels = chance.choice([*[0] * 12, 1, 2, 255], (1 << depth,) * 3).astype(np.uint8)
     words = words_of(voxels)
     means = chance.choice(NUMBERS, len(words) // 8).astype(np.uint8)
     leaves = words >> 31 == 1
@@ -27,7 +27,7 @@ def some_scene(chance):
 def scales_of(chance, camera):
     """Make scales with which a ray through the corner of the picture reaches up to 64 voxels, if it is long enough."""
     largest = int(np.abs(ray.directions(camera, *SIZE)[0, 0]).max())
-    return np.minimum((chance.integers(0, 64, 4) << 20) // max(largest, 1) + 1, (1 << 20) - 1)
+    return np.minimum((chance.integers(0, 1 << chance.integers(0, 7, 4)) << 20) // max(largest, 1) + 1, (1 << 20) - 1)
 
 
 async def read_back(dut, count):
