@@ -352,7 +352,7 @@ def tufts():
 
 @scene
 def waves():
-    """A painted sheet with thickness, repeated along a spiral and mirrored at a turned object, with a negative scale."""
+    """A painted sheet with thickness, repeated along a spiral, mirrored at a turned object, with a negative scale."""
     bpy.ops.mesh.primitive_grid_add(x_subdivisions=8, y_subdivisions=8, size=2)
     sheet = bpy.context.object
     for vertex in sheet.data.vertices:

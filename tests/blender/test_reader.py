@@ -72,12 +72,7 @@ def test_voxels_are_those_of_the_gltf_export(name, tmp_path):
 def exported(folder, **options):
     path = folder / "scene.glb"
     bpy.ops.export_scene.gltf(
-        filepath=str(path),
-        export_extras=True,
-        export_gn_mesh=True,
-        use_renderable=True,
-        export_skins=False,
-        **options,
+        filepath=str(path), export_extras=True, export_gn_mesh=True, use_renderable=True, export_skins=False, **options
     )
     return voxrt.load(path)
 
