@@ -39,7 +39,7 @@ def solid_box(source: Octree | World, low: ArrayLike, high: ArrayLike, *, words:
     >>> from voxrt.octree import from_points, to_points
     >>> octree = from_points([[1, 2, 3], [9, 9, 9]], [7, 8], depth=4)
     >>> to_points(solid_box(octree, (1, 1, 1), (6, 6, 6), words=100, octants=100))
-    (array([[0, 1, 2]]), array([1], dtype=uint8))
+    (array([[0, 1, 2]], dtype=int32), array([1], dtype=uint8))
     """
     start, end = as_box(low, high)
     sides = [above - below for below, above in zip(start, end, strict=True)]

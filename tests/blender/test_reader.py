@@ -83,7 +83,7 @@ def with_transforms_of(ours, theirs):
 
 
 def test_particles_that_overlap_are_those_of_the_gltf_export_in_one_order(tmp_path):
-    """Of overlapping objects the first gives a voxel its material, and the exporter sorts objects by their names."""
+    """The first of overlapping objects gives a voxel its material, and the exporter has another order."""
     scenes.empty_file()
     scenes.SCENES["tufts"]()
     ours = read()
