@@ -9,6 +9,7 @@ import { subtract } from "./vectors.js";
 
 const REACH = 64; // voxels around the body
 const LEAST = 2;
+const STEP = 16; // boxes begin and end at whole octants of this side: they are cut out quickly, and are small
 
 /** `version`: of the voxels. @typedef {{ box: Box, version: string, octree: Octree }} Known */
 
@@ -74,8 +75,8 @@ export class ServedGround {
   async #fetch(box) {
     const version = this.#version;
     const [low, high] = [
-      box[0].map((part) => Math.floor(part - this.#reach)),
-      box[1].map((part) => Math.ceil(part + this.#reach)),
+      box[0].map((part) => STEP * Math.floor((part - this.#reach) / STEP)),
+      box[1].map((part) => STEP * Math.ceil((part + this.#reach) / STEP)),
     ];
     try {
       const { solid } = await this.app.connection.request("solid", { low, high });
