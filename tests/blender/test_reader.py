@@ -205,6 +205,27 @@ def test_wrong_properties_are_refused(key, value, problem):
     assert str(refused.value) == f"scene: {problem}"
 
 
+def test_vertices_that_are_nowhere_are_refused():
+    scenes.empty_file()
+    scenes.cube().data.vertices[5].co = (0, float("nan"), 0)
+    with pytest.raises(voxrt.AssetError, match="scene: object 'cube', vertex 5: its coordinates are not finite; dele"):
+        read()
+
+
+def test_emission_is_as_bright_as_its_strength():
+    """Linear 0.25 of it is 188 of 255 at twice the strength; what is brighter than white is clamped, and counted."""
+    for strength, colour, clamped in ((2.0, (255, 188, 0), 0), (8.0, (255, 255, 0), 1)):
+        scenes.empty_file()
+        lamp = scenes.paint("lamp", (0, 0, 0))
+        shader = lamp.node_tree.nodes["Principled BSDF"]
+        shader.inputs["Emission Color"].default_value = (0.5, 0.25, 0, 1)
+        shader.inputs["Emission Strength"].default_value = strength
+        scenes.cube(material=lamp)
+        scene = read()
+        assert scene.materials[1].colour == colour
+        assert [one.count for one in scene.warnings if one.kind == "colour-range"] == [1] * clamped
+
+
 def test_a_scene_without_meshes_is_refused():
     """With what the scene has instead."""
     scenes.empty_file()

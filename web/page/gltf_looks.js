@@ -99,7 +99,8 @@ export class GltfLooks {
     const glossy = material.extensions?.[GLOSSY];
     /** @type {number[]} */ let factor = (glossy ? glossy.diffuseFactor : base.baseColorFactor) ?? [1, 1, 1, 1];
     let texture = glossy ? glossy.diffuseTexture : base.baseColorTexture;
-    /** @type {number[]} */ const emission = material.emissiveFactor ?? [0, 0, 0];
+    const strength = material.extensions?.KHR_materials_emissive_strength?.emissiveStrength ?? 1;
+    /** @type {number[]} */ const emission = (material.emissiveFactor ?? [0, 0, 0]).map((part) => part * strength);
     if (Math.max(...factor.slice(0, 3)) <= 0 && Math.max(...emission) > 0) {
       factor = [...emission, factor[3]]; // it reflects nothing, and shows what it emits
       texture = material.emissiveTexture;
