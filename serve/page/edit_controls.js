@@ -9,6 +9,7 @@ import { $, isPressed, pressed } from "./elements.js";
 /** @import { Gestures } from "./gestures.js" @import { Commands } from "./tools.js" @import { Walker } from "./walker.js" */
 
 const FINE = 5; // levels: the first brush has 1/32 of the world
+const NARROW = matchMedia("(max-width: 45rem), (max-height: 30rem)"); // the panel would leave little of the picture
 
 /** `keepOut`: where nothing is built, the box of who walks. @typedef {{ tool: Tool, size: number, material: number,
  * stroke: number, keepOut: Box | null }} Use */
@@ -23,6 +24,7 @@ export class EditControls {
   /** @type {Choice} */ choice = { tool: "look", size: 1, material: 1 };
   /** @type {Place | null} */ #pointer = null;
   #isAiming = false;
+  #hidPanel = false;
 
   /** @param {Gestures} gestures @param {Commands} commands @param {Walker} walker @param {Edits} edits */
   constructor(gestures, commands, walker, edits) {
@@ -65,6 +67,9 @@ export class EditControls {
   toggle() {
     this.bar.box.hidden = this.isOpen;
     pressed($("edit-toggle"), this.isOpen);
+    const hidesPanel = this.isOpen && NARROW.matches && !document.body.classList.contains("panel-hidden");
+    if (hidesPanel || this.#hidPanel) $("toggle-panel").click();
+    this.#hidPanel = hidesPanel;
     this.choose({ tool: this.isOpen ? "dig" : "look" });
   }
 

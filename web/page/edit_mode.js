@@ -12,11 +12,8 @@ import { Walker } from "./walker.js";
 /** @import { Flight } from "./flight.js" @import { Gestures } from "./gestures.js" */
 /** @import { Commands } from "./tools.js" */
 
-const NARROW = matchMedia("(max-width: 45rem), (max-height: 30rem)"); // the panel would leave little of the picture
-
 export class EditMode {
   /** @type {Editor | null} */ #editor = null;
-  #hidPanel = false;
 
   /** @param {App} app @param {Gestures} gestures @param {Flight} flight @param {Commands} commands */
   constructor(app, gestures, flight, commands) {
@@ -46,9 +43,6 @@ export class EditMode {
     const { controls } = this;
     if (!controls.isOpen && !this.#editor) this.#begin();
     controls.toggle();
-    const hidesPanel = controls.isOpen && NARROW.matches && !document.body.classList.contains("panel-hidden");
-    if (hidesPanel || this.#hidPanel) $("toggle-panel").click();
-    this.#hidPanel = hidesPanel;
   }
 
   #begin() {
