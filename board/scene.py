@@ -49,6 +49,8 @@ class Scene:
         What its file lost on the way here, a line each.
     names
         Names of the materials by id, as far as they are known.
+    voxel_size
+        Metres; None where that is not known.
     """
 
     name: str
@@ -62,6 +64,7 @@ class Scene:
     period: float | None = None
     warnings: tuple[str, ...] = ()
     names: tuple[str, ...] = ()
+    voxel_size: float | None = None
 
     @property
     def background(self) -> Triple:

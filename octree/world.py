@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 _MOST_WORDS = 1 + 8 * ((1 << 28) - 1)
 _MOST_SIDE = 1 << 16
-_MOST_AUTHOR = 2**32 - 1
+_MOST_AUTHOR = _MOST_STROKE = 2**32 - 1
 
 
 class World:
@@ -91,7 +91,7 @@ class World:
             raise DoesNotFitError(
                 f"{rom.name}: its {len(rom.octree.words):,} words do not fit the {self._limit:,} of the world's memory"
             )
-        self._author = 0
+        self._author = self._stroke = 0
         self._native = _native.World(rom.octree.words, rom.octree.depth, self._limit, steps, root)
         self._depth, self._has_means = rom.octree.depth, rom.octree.means is not None
         self._rom = replace(rom, octree=Octree(self._depth, np.array([EMPTY], np.uint32)))  # all but the voxels
@@ -264,6 +264,30 @@ class World:
     def author(self, author: int) -> None:
         self._author = whole("author", author, 0, _MOST_AUTHOR)
         self._native.set_author(self._author)
+
+    @property
+    def stroke(self) -> int:
+        """The stroke of the edits from now on: an integer, 0 … 2**32 - 1; 0 at the beginning.
+
+        Edits in a row by one author and of one stroke are undone together; those of stroke 0 are not.
+
+        Examples
+        --------
+        >>> from voxrt.octree import Rom, World, from_points
+        >>> from voxrt.voxelize import EMPTY, Material
+        >>> world = World(Rom("dot", from_points([[1, 2, 3]], [1], depth=2), (EMPTY, Material("oak", (160, 110, 60)))))
+        >>> world.stroke = 1
+        >>> for x in range(3):
+        ...     world.set([[x, 0, 0]], 1)
+        >>> world.steps, world.undo(), world.material_at([[0, 0, 0], [2, 0, 0]])
+        ((1, 0), True, array([0, 0], dtype=uint8))
+        """
+        return self._stroke
+
+    @stroke.setter
+    def stroke(self, stroke: int) -> None:
+        self._stroke = whole("stroke", stroke, 0, _MOST_STROKE)
+        self._native.set_stroke(self._stroke)
 
     def undo(self) -> bool:
         """Take back the last edit of :attr:`author` that is not undone. False if there is none.

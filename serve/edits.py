@@ -1,18 +1,21 @@
-"""Edits of the present scene by clients: what they may ask for."""
+"""Edits of the present scene by clients, and cuts of it: what they may ask for."""
 
 from __future__ import annotations
 
+import base64
 import time
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from voxrt.board.errors import Refused
 from voxrt.octree import Box, Capsule, RomError, Sphere
 from voxrt.octree.edit_operations import AddMaterial, Fill, Paint, PasteBox, Redo, SetVoxels, ShapeOperation, Undo
+from voxrt.octree.solid_box import solid_box
 from voxrt.serve.rate_limiter import RateLimiter
 from voxrt.voxelize import DoesNotFitError
 
 if TYPE_CHECKING:
-    from voxrt.octree import World
+    from voxrt.octree import Octree, World
+    from voxrt.octree.query import Corner
     from voxrt.octree.shapes import Shape
 
 EditOperation: TypeAlias = SetVoxels | Fill | Paint | PasteBox | AddMaterial | Undo | Redo
@@ -22,6 +25,10 @@ SHAPE_LIMIT: Final = 512
 """Voxels that the sides of a shape may have: a ball of this size takes about 0.1 s."""
 PASTE_LIMIT: Final = 128
 """Voxels that the sides of a box may have that is copied, since all of its voxels may differ."""
+CUT_WORDS: Final = 1 << 15
+"""Words of a cut: 128 KiB."""
+CUT_OCTANTS: Final = 1 << 16
+"""Octants that a cut looks into, which takes about 10 ms."""
 _NAME = 200
 
 
@@ -38,12 +45,28 @@ def check_operation(operation: EditOperation) -> None:
         raise Refused(f"the name of a material has 1 to {_NAME} printable characters")
 
 
-def run_operation(operation: EditOperation, world: World) -> None:
+def run_operation(operation: EditOperation, stroke: int, world: World) -> None:
     """Edit a world. Refused where that cannot be done; then nothing has changed."""
+    world.stroke = stroke
     try:
         operation.run(world)
     except (TypeError, ValueError, RomError, DoesNotFitError) as error:
         raise Refused(str(error)) from error
+
+
+def cut_solid(scene: Octree | World, low: Corner, high: Corner) -> dict[str, object]:
+    """Cut the solid voxels of a box out: `depth`, and `words` as the Base64 of little-endian bytes.
+
+    Raises
+    ------
+    Refused
+        The box is none, or too much is in it.
+    """
+    try:
+        cut = solid_box(scene, low, high, words=CUT_WORDS, octants=CUT_OCTANTS)
+    except (TypeError, ValueError) as error:
+        raise Refused(str(error)) from error
+    return {"depth": cut.depth, "words": base64.b64encode(cut.words.astype("<u4").tobytes()).decode()}
 
 
 class EditRate:

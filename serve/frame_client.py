@@ -124,8 +124,10 @@ class FrameClient:
         work = self._upload(files, progress, check_only=check_only)
         return await _in_time(work, _UPLOAD_SECONDS, "does not load the scene")
 
-    async def edit(self, operation: Mapping[str, object]) -> dict[str, int]:
+    async def edit(self, operation: Mapping[str, object], *, stroke: int = 0) -> dict[str, int]:
         """Edit the scene by an operation of ``voxrt edit`` (docs/edit.md), such as ``{"op": "undo"}``.
+
+        Edits in a row of one stroke, 1 … 2**32 - 1, are undone together.
 
         Returns
         -------
@@ -138,7 +140,7 @@ class FrameClient:
         Refused
             The server refused the edit, which changed nothing; or it does not answer, or closed the connection.
         """
-        figures = (await self.request("edit", operation=operation)).get("edit")
+        figures = (await self.request("edit", operation=operation, stroke=stroke)).get("edit")
         if not isinstance(figures, dict):
             raise _not_understood()
         return {name: _whole(figures, name) for name in ("number", "undo", "redo", "blocks", "words", "materials")}

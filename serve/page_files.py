@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+import voxrt.octree
+
 _TYPES = {
     ".html": "text/html; charset=utf-8",
     ".css": "text/css; charset=utf-8",
@@ -45,4 +47,6 @@ def load_page_files() -> dict[str, PageFile]:
         for path in sorted(folder.iterdir())
         if path.suffix in _TYPES
     }
+    words = Path(voxrt.octree.__file__).with_name("words.js")
+    files["/voxrt/words.js"] = PageFile(words.read_bytes(), _TYPES[".js"])
     return {"/": files["/index.html"], **files}

@@ -13,11 +13,13 @@ import numpy as np
 from voxrt.board.errors import DeviceError, Refused
 from voxrt.octree import Octree, frame_octree
 from voxrt.octree.camera import POSITION_UNITS
+from voxrt.serve.edits import cut_solid
 from voxrt.serve.packets import pack_chunk, unpack_chunk
 from voxrt.serve.requests import (
     CancelUpload,
     CastRay,
     ChangeView,
+    CutSolid,
     EditScene,
     ListMaterials,
     LoadScene,
@@ -121,15 +123,13 @@ class RequestHandler:
         session, client, number = self._session, self._client, request.request
         answer: dict[str, Any] = {}
         match request:
-            case CastRay():
-                answer["hit"] = await session.renderer.aside(_cast_in(session.renderer, request))
+            case CastRay() | CutSolid() | ListMaterials():
+                answer |= await self._describe_scene(request)
             case ChangeView():
                 session.renderer.change_view(request, client.number, number)
                 session.clients.queue_state()
             case EditScene():
-                answer["edit"] = await session.edit(client.number, number, request.operation)
-            case ListMaterials():
-                answer["materials"] = await session.renderer.materials()
+                answer["edit"] = await session.edit(client.number, request)
             case SaveScene():
                 answer["files"] = await session.save(client.number, number, request.suffix)
             case ReadSaved():
@@ -143,6 +143,16 @@ class RequestHandler:
                 session.start_upload(number, request)
                 answer |= {"type": "ready", "upload": number}
         return answer
+
+    async def _describe_scene(self, request: CastRay | CutSolid | ListMaterials) -> dict[str, Any]:
+        renderer = self._session.renderer
+        match request:
+            case CastRay():
+                return {"hit": await renderer.aside(_cast_in(renderer, request))}
+            case CutSolid():
+                return {"solid": await renderer.aside(_cut_in(renderer, request))}
+            case ListMaterials():
+                return {"materials": await renderer.materials()}
 
     def _upload_number(self) -> int:
         session = self._session
@@ -196,9 +206,19 @@ def _cast_in(renderer: Renderer, ray: CastRay) -> Callable[[], dict[str, Any] | 
     return partial(_cast_ray, renderer.scene, renderer.view.frame, ray)
 
 
+def _cut_in(renderer: Renderer, box: CutSolid) -> Callable[[], dict[str, object]]:
+    """Return what cuts the solid voxels of a box out of the scene as it is now."""
+    scene, world, frame = renderer.scene, renderer.world, renderer.view.frame
+    return lambda: cut_solid(world or _frame_of(scene, frame), box.low, box.high)
+
+
+def _frame_of(scene: Scene, frame: int) -> Octree:
+    return frame_octree(Octree(scene.depth, scene.words), scene.roots[frame])
+
+
 def _cast_ray(scene: Scene, frame: int, ray: CastRay) -> dict[str, Any] | None:
     """Find the first solid voxel on a ray, as the hardware finds it, and where the ray enters it."""
-    octree = frame_octree(Octree(scene.depth, scene.words), scene.roots[frame])
+    octree = _frame_of(scene, frame)
     origin, still = np.array(ray.origin) / POSITION_UNITS, not any(ray.direction)
     try:
         hits = cast_rays(octree, origin, (1, 0, 0) if still else ray.direction, threads=1)

@@ -10,6 +10,7 @@ import msgspec
 from voxrt.board.errors import Refused
 from voxrt.board.view import Camera, Lighting, Shading, View
 from voxrt.octree.camera import DIRECTION_LIMIT
+from voxrt.octree.query import Corner  # noqa: TC001 - msgspec resolves the annotations of this module
 from voxrt.serve.edits import EditOperation  # noqa: TC001 - msgspec resolves the annotations of this module
 
 _NAME = 200
@@ -136,9 +137,17 @@ class CastRay(Request, frozen=True, tag="ray"):
 
 
 class EditScene(Request, frozen=True, tag="edit"):
-    """Edit the scene that is shown."""
+    """Edit the scene that is shown; edits in a row of one stroke, other than 0, are undone together."""
 
     operation: EditOperation
+    stroke: _Number = 0
+
+
+class CutSolid(Request, frozen=True, tag="solid"):
+    """Get the solid voxels of a box, for who walks there."""
+
+    low: Corner
+    high: Corner
 
 
 class ListMaterials(Request, frozen=True, tag="materials"):
@@ -170,6 +179,7 @@ _Any: TypeAlias = (
     | CancelUpload
     | CastRay
     | EditScene
+    | CutSolid
     | ListMaterials
     | SaveScene
     | ReadSaved

@@ -56,6 +56,7 @@ class Described(msgspec.Struct, frozen=True, tag=True):
     period: float | None
     warnings: tuple[str, ...]
     names: tuple[str, ...] = ()
+    voxel_size: float | None = None
 
 
 Message: TypeAlias = Stage | Problem | Described
@@ -106,6 +107,7 @@ def run_child(read: Callable[[Sequence[Path], Progress], Scene], files: Sequence
                 scene.period,
                 shown_warnings(scene.warnings),
                 tuple(shown_line(name, _NAME) for name in scene.names),
+                scene.voxel_size,
             ),
         )
         for array, kind in ((scene.colours, "u1"), (scene.mirrors, "u1"), (scene.words, "<u4")):

@@ -174,4 +174,17 @@ async def _receive_scene(out: asyncio.StreamReader, described: Described) -> Sce
     name, camera, lighting = shown_line(described.name), described.camera, described.lighting
     roots, period, warnings = described.roots, described.period, shown_warnings(described.warnings)
     names = tuple(shown_line(one) for one in described.names[:256])
-    return Scene(name, described.depth, words, colours, mirrors, camera, lighting, roots, period, warnings, names)
+    return Scene(
+        name,
+        described.depth,
+        words,
+        colours,
+        mirrors,
+        camera,
+        lighting,
+        roots,
+        period,
+        warnings,
+        names,
+        described.voxel_size,
+    )

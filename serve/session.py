@@ -27,9 +27,8 @@ if TYPE_CHECKING:
     from voxrt.board.device import Device
     from voxrt.board.scene import Scene
     from voxrt.board.scene_memory import Progress
-    from voxrt.serve.edits import EditOperation
     from voxrt.serve.packets import Chunk
-    from voxrt.serve.requests import StartUpload
+    from voxrt.serve.requests import EditScene, StartUpload
     from voxrt.serve.scene_library import SceneLibrary
     from voxrt.serve.server_options import Limits
 
@@ -118,6 +117,7 @@ class Session:
                 "size": DEFAULT_SIZE,
                 "frames": len(scene.roots),
                 "period": scene.period,
+                "voxel_size": scene.voxel_size,
                 "warnings": scene.warnings,
                 "edits": renderer.edits(self.control.controller),
             },
@@ -205,7 +205,7 @@ class Session:
         reader = self._library.scene_reader or self._library.reader
         return await self._load_scene(client, reader.read(paths, progress), progress, check_only=False)
 
-    async def edit(self, client: int, request: int, operation: EditOperation) -> dict[str, int]:
+    async def edit(self, client: int, request: EditScene) -> dict[str, int]:
         """Edit the scene, and return the figures of the edit.
 
         Raises
@@ -216,8 +216,9 @@ class Session:
             The device did not keep it.
         """
         self._edit_rate.check()
-        check_operation(operation)
-        figures = await self.renderer.edit(partial(run_operation, operation), client, request)
+        check_operation(request.operation)
+        change = partial(run_operation, request.operation, request.stroke)
+        figures = await self.renderer.edit(change, client, request.request)
         self.clients.queue_state()
         return figures
 

@@ -331,3 +331,47 @@ def particles():
     system = ground.modifiers.new("grains", "PARTICLE_SYSTEM").particle_system.settings
     system.type, system.count, system.render_type = "HAIR", 20, "OBJECT"
     system.instance_object, system.particle_size, system.hair_length = grain, 0.1, 4
+
+
+@scene
+def tufts():
+    """Hair particles that show a collection of two objects, among each other."""
+    tuft = bpy.data.collections.new("tuft")
+    tuft.objects.link(monkey((0, 0, 9), paint("fur", (0.9, 0.2, 0.1))))
+    tuft.objects.link(cube((0, 2, 9), paint("thorn", (0.1, 0.2, 0.9)), scale=(0.4, 0.4, 0.8)))
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=24, ring_count=12)
+    ball = bpy.context.object
+    ball.scale = (1, -2, 1.5)
+    ball.data.materials.append(paint("skin", (0.5, 0.5, 0.5)))
+    system = ball.modifiers.new("tufts", "PARTICLE_SYSTEM").particle_system.settings
+    system.type, system.count, system.render_type = "HAIR", 60, "COLLECTION"
+    system.instance_collection, system.particle_size, system.size_random = tuft, 0.15, 0.5
+    system.use_advanced_hair = system.use_rotations = system.use_rotation_instance = True
+    system.rotation_factor_random, system.phase_factor_random = 1, 2
+
+
+@scene
+def waves():
+    """A painted sheet with thickness, repeated along a spiral, mirrored at a turned object, with a negative scale."""
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=8, y_subdivisions=8, size=2)
+    sheet = bpy.context.object
+    for vertex in sheet.data.vertices:
+        vertex.co.z = 0.3 * math.sin(3 * vertex.co.x) * math.cos(2 * vertex.co.y)
+    painted = sheet.data.color_attributes.new("Col", "BYTE_COLOR", "CORNER")
+    for number, corner in enumerate(painted.data):
+        corner.color = (number % 5 / 5, number % 3 / 3, 0.4, 1)
+    material = paint("painted", (1, 1, 1))
+    tree = material.node_tree
+    node = tree.nodes.new("ShaderNodeVertexColor")
+    node.layer_name = "Col"
+    tree.links.new(node.outputs["Color"], tree.nodes["Principled BSDF"].inputs["Base Color"])
+    sheet.data.materials.append(material)
+    sheet.modifiers.new("thick", "SOLIDIFY").thickness = 0.2
+    repeated = sheet.modifiers.new("repeated", "ARRAY")
+    repeated.count, repeated.use_relative_offset, repeated.use_object_offset = 3, False, True
+    repeated.offset_object = link("step")
+    repeated.offset_object.location, repeated.offset_object.rotation_euler = (1.7, 0.4, 0.6), (0.2, 0.1, 0.5)
+    mirrored = sheet.modifiers.new("mirrored", "MIRROR")
+    mirrored.mirror_object = link("mirror")
+    mirrored.mirror_object.location, mirrored.mirror_object.rotation_euler = (-1.3, 0, 0), (0, 0, 0.3)
+    sheet.scale, sheet.rotation_euler = (-1.2, 1, 0.8), (0.1, 0.7, 0.2)

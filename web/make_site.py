@@ -39,11 +39,11 @@ TYPES = re.compile(r"^[ \t]*/\*\*(?:(?!\*/)[\s\S])*\*/\n|/\*\*(?:(?!\*/)[\s\S])*
 IMPORT = re.compile(r"""(from\s+)(['"])([^'"]+)\2""")
 
 SHARED = (
-    "aim.js", "camera.js", "camera_text.js", "controls.css", "copy_address.js", "crc32.js", "drop.js",
-    "edit.css", "edit_bar.js", "edit_pointer.js", "elements.js", "events.js", "figures.js", "flight.js",
-    "frame_requests.js", "gestures.js", "glide.js", "icon.svg", "light.js", "navigation.js", "notices.js",
-    "picture.js", "pilot.js", "projection.js", "resolution.js", "save.js", "style.css", "tools.js",
-    "vectors.js", "viewpoint.js", "views.js", "walk.js",
+    "aim.js", "brush.js", "camera.js", "camera_text.js", "controls.css", "copy_address.js", "crc32.js", "drop.js",
+    "edit.css", "edit_bar.js", "edit_controls.js", "edit_pointer.js", "elements.js", "events.js", "figures.js",
+    "flight.js", "frame_requests.js", "gestures.js", "glide.js", "icon.svg", "light.js", "navigation.js", "notices.js",
+    "picture.js", "pilot.js", "projection.js", "resolution.js", "save.js", "solids.js", "style.css", "tools.js",
+    "vectors.js", "viewpoint.js", "views.js", "walk.js", "walker.js",
 )  # fmt: skip
 """Files of the server's page."""
 

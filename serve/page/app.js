@@ -4,8 +4,7 @@
 import { Advanced } from "./advanced.js";
 import { fromRegisters, pixelDirection, toRegisters } from "./camera.js";
 import { Connection } from "./connection.js";
-import { EditTools } from "./edit_tools.js";
-import { $, all } from "./elements.js";
+import { $, all, isPressed } from "./elements.js";
 import { Figures } from "./figures.js";
 import { FrameRequests } from "./frame_requests.js";
 import { Light } from "./light.js";
@@ -20,12 +19,15 @@ import { Viewpoint } from "./viewpoint.js";
 import { Views } from "./views.js";
 /** @import { Box, Registers, Size } from "./camera.js" @import { Away } from "./connection.js" */
 /** @import { Frame, Hello, State, View } from "./protocol.js" @import { Move } from "./viewpoint.js" */
+/** @import { EditTools } from "./edit_tools.js" @import { Walker } from "./walker.js" */
 
 const CONTROLS = "#panel :is(button, input, select), #empty button, #frame, #player :is(button, input), #pad button";
 const ALWAYS = ["help", "copy"]; // work without control
 
 export class App {
   /** @type {number | null} the scene to which the view belongs */ #scene = null;
+  /** @type {EditTools | null} */ editing = null;
+  /** @type {Walker | null} */ walker = null;
   #hadControl = false;
   #hasRequested = false; // control, since nobody has it
   /** @type {Partial<View>} fields of the view that the state of the server does not have yet */ #unconfirmed = {};
@@ -42,7 +44,6 @@ export class App {
     this.light = new Light(this);
     this.advanced = new Advanced(this);
     this.link = new SceneLink(this);
-    this.editing = new EditTools(this);
     this.connection.on("hello", (hello) => this.#greet(hello));
     this.connection.on("disconnected", (away) => this.#leave(away));
     this.connection.on("state", (state) => this.#show(state));
@@ -76,7 +77,9 @@ export class App {
   }
 
   /** @param {Move} how */ glide(how) {
-    if (this.hasControl()) this.viewpoint.glide(how);
+    if (!this.hasControl()) return;
+    this.walker?.end();
+    this.viewpoint.glide(how);
   }
 
   /** @param {Partial<View>} fields */ set(fields) {
@@ -117,7 +120,8 @@ export class App {
 
   /** The voxel under a place of the page becomes the target. @param {number} x @param {number} y */
   async focusAt(x, y) {
-    const ray = this.hasControl() && !this.editing.active ? this.rayAt(x, y) : null;
+    const isFree = this.hasControl() && !this.editing?.active && !isPressed($("walk"));
+    const ray = isFree ? this.rayAt(x, y) : null;
     if (!ray) return;
     try {
       const { hit } = await this.connection.request("ray", ray);
@@ -164,6 +168,7 @@ export class App {
     this.#hasRequested = controller === null;
     this.#showControl(state, mine);
     const another = this.#scene !== scene.number;
+    if (another || !mine) this.walker?.end();
     this.#scene = scene.number;
     if (another || !mine || !this.#hadControl || !this.viewpoint.pose) {
       this.viewpoint.reset(another && mine ? this.firstView() : this.#poseOf(view.camera, view.size));
@@ -175,7 +180,7 @@ export class App {
       scene.number === 0 ? "" : `${2 ** scene.depth}³ voxels · ${scene.words.toLocaleString()} words`;
     $("picture").style.backgroundColor = `rgb(${view.background.join()})`;
     for (const panel of [this.scenes, this.player, this.light, this.advanced, this.link, this.editing])
-      panel.show(state);
+      panel?.show(state);
     $("connection").dataset.state = trouble ? "disconnected" : "connected";
     $("connection").textContent = trouble ? "no frames" : this.device().name;
     if (trouble) notice("error", "There are no frames", trouble);

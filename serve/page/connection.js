@@ -12,10 +12,12 @@ const RETRY = { first: 500, longest: 5000 }; // milliseconds
 /** @typedef {Refusal & { retry: number }} Away */
 /** @typedef {Progress & { type: string, bytes: number }} Report */
 
+/** An octree: Base64 of its words. @typedef {{ depth: number, words: string }} Solid */
+
 /** What answers hold, each some of it. @typedef {{ request: number, upload: number, scene: { name: string }, hit: { point:
  * Vector, voxel: Vector, material: number, face: number | null } | null, files: { name: string, size: number }[], part:
  * Uint8Array<ArrayBuffer>, edit: { blocks: number, words: number, undo: number, redo: number, materials: number },
- * materials: [string, string][], registers: Record<string, number>, counters: Record<string, number> }} Answer */
+ * solid: Solid, materials: [string, string][], registers: Record<string, number>, counters: Record<string, number> }} Answer */
 
 /** @typedef {{ resolve: (answer: Answer) => void, reject: (error: Error) => void, progress?: ((report: Report) =>
  * void) | null }} Pending a request that waits for its answer */

@@ -24,6 +24,7 @@ export class Flight {
   /** @type {Set<string>} codes of keys */ #held = new Set();
   #modifiers = { shiftKey: false, altKey: false };
   #last = performance.now();
+  /** @type {{ active: boolean, step: () => void } | null} */ walker = null;
 
   /** @param {HTMLElement} pad @param {Actions} actions */ constructor(pad, actions) {
     this.actions = actions;
@@ -42,7 +43,7 @@ export class Flight {
   }
 
   get active() {
-    return this.#held.size > 0;
+    return this.#held.size > 0 || Boolean(this.walker?.active);
   }
 
   /** @param {KeyboardEvent} event */ press(event) {
@@ -99,6 +100,7 @@ export class Flight {
     if (going.some(Boolean)) this.actions.fly(going[0] * speed, going[1] * speed, going[2] * speed);
     if (turning.some(Boolean)) this.actions.rotate(turning[0] * TURN * seconds, turning[1] * TURN * seconds);
     if (dollying) this.actions.dolly(Math.exp(dollying * DOLLY * seconds));
+    this.walker?.step();
   }
 }
 

@@ -1,10 +1,13 @@
 // The start of the page: its buttons, its keys, and what happens once per frame of the screen.
 
 import { App } from "./app.js";
+import { EditTools } from "./edit_tools.js";
 import { $ } from "./elements.js";
 import { frame } from "./navigation.js";
 import { makePilot } from "./pilot.js";
+import { ServedGround } from "./served_ground.js";
 import { makeTools } from "./tools.js";
+import { Walker } from "./walker.js";
 
 const app = new App();
 const { connection, viewpoint, views } = app;
@@ -16,8 +19,10 @@ const commands = {
   ...views.commands(),
 };
 const pilot = makePilot(app, $("picture"), commands, (x, y) => app.focusAt(x, y));
-app.editing.connect(pilot.gestures, commands);
+const walker = new Walker(app, pilot.flight, new ServedGround(app));
+app.editing = new EditTools(app, pilot.gestures, commands, walker);
 
+$("walk").onclick = () => walker.start();
 $("frame").onclick = commands.KeyF;
 $("reset").onclick = commands.KeyR;
 $("take").onclick = () => connection.request("take").catch(() => {});

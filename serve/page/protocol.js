@@ -12,8 +12,8 @@ export const PART_HEADER = 16;
  * chunk: number, upload: number } }} Hello */
 
 /** @typedef {{ number: number, name: string, depth: number, words: number, bounds: Box | null, camera: Registers,
- * size: Size, frames?: number, period?: number | null, warnings?: string[], edits?: { undo: number, redo: number,
- * materials: number } }} Scene */
+ * size: Size, frames?: number, period?: number | null, voxel_size?: number | null, warnings?: string[], edits?: { number: number, undo: number, redo:
+ * number, materials: number } }} Scene */
 
 /** @typedef {Look & { camera: Registers, size: Size, nonstop: boolean, frame: number }} View */
 

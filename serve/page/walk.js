@@ -25,9 +25,9 @@ const SMALL = 1 / 12; // part of the world's side that the eye is above the grou
  * right: number, forward: number, yaw: number, pace: number, jump: boolean }} Wish */
 
 /** A body of usual size where voxels have a known size in metres; smaller in small worlds. @param {number | null}
- * voxelSize @param {number} side voxels @returns {Body} */
-export function bodyFor(voxelSize, side) {
-  const eye = Math.max(LEAST, Math.min(PERSON.eye / (voxelSize ?? Infinity) || side / 32, side * SMALL));
+ * voxelSize @param {number} side voxels @param {number} [tallest] voxels to the eye @returns {Body} */
+export function bodyFor(voxelSize, side, tallest = Infinity) {
+  const eye = Math.max(LEAST, Math.min(PERSON.eye / (voxelSize ?? Infinity) || side / 32, side * SMALL, tallest));
   const scale = eye / PERSON.eye;
   const { height, radius, step, pace, jump, gravity } = PERSON;
   return {

@@ -234,6 +234,16 @@ def test_time_is_limited(tmp_path):
         isolated.read_isolated(path, limits=least)
 
 
+def test_memory_is_limited(tmp_path):
+    """Blender crashes where it gets no memory; the line says what it has printed before."""
+    scenes.empty_file()
+    scenes.cube().modifiers.new("many", "ARRAY").count = 3_000_000
+    path = saved(tmp_path / "many.blend")
+    least = Limits(memory=2 << 30, most_memory=2 << 30, seconds=60)
+    with pytest.raises(voxrt.AssetError, match=r"many\.blend: needs more memory than a file of its size may take"):
+        isolated.read_isolated(path, limits=least)
+
+
 LAUNCHER = """#!{python} -P
 # The module bpy with the few options of the program that voxrt gives it.
 import sys

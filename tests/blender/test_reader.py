@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -13,8 +15,10 @@ import voxrt  # noqa: E402
 from voxrt.voxelize.formats.blend.rendered import as_rendered  # noqa: E402
 from voxrt.voxelize.formats.blend.scene import read_depsgraph  # noqa: E402
 
-# What glTF cannot express, or Blender's exporter leaves out by default: hair particles have no mesh there.
-NOT_IN_GLTF = {"particles"}
+# What Blender's exporter leaves out by default: hair particles have no mesh there.
+NOT_IN_GLTF = {"particles", "tufts"}
+# What it writes with a transform of its own rounding: position, turn and scale, each as float32.
+ROUNDED = {"waves"}
 
 
 def read(name="scene", **options):
@@ -55,16 +59,45 @@ def test_voxels_are_those_of_the_gltf_export(name, tmp_path):
         for modifier in one.modifiers:
             if modifier.type == "SUBSURF":
                 modifier.levels = modifier.render_levels
-    path = tmp_path / "scene.glb"
+    theirs = exported(tmp_path, export_apply=name != "shape_keys")  # which it drops where it applies modifiers
+    bounds = bounds_of(ours)
+    if name in ROUNDED:
+        np.testing.assert_array_equal(shown_colours(ours, bounds) < 0, shown_colours(theirs, bounds) < 0)
+        for one, same in zip(ours.objects, theirs.objects, strict=True):
+            np.testing.assert_allclose(one.transform, same.transform, atol=1e-7)
+        theirs = with_transforms_of(ours, theirs)
+    np.testing.assert_array_equal(shown_colours(ours, bounds), shown_colours(theirs, bounds))
+
+
+def exported(folder, **options):
+    path = folder / "scene.glb"
     bpy.ops.export_scene.gltf(
-        filepath=str(path),
-        export_apply=name != "shape_keys",  # which the exporter drops where it applies modifiers
-        export_extras=True,
-        export_gn_mesh=True,
-        use_renderable=True,
-        export_skins=False,
+        filepath=str(path), export_extras=True, export_gn_mesh=True, use_renderable=True, export_skins=False, **options
     )
-    theirs = voxrt.load(path)
+    return voxrt.load(path)
+
+
+def with_transforms_of(ours, theirs):
+    objects = [replace(same, transform=one.transform) for one, same in zip(ours.objects, theirs.objects, strict=True)]
+    return replace(theirs, objects=tuple(objects))
+
+
+def test_particles_that_overlap_are_those_of_the_gltf_export_in_one_order(tmp_path):
+    """The first of overlapping objects gives a voxel its material, and the exporter has another order."""
+    scenes.empty_file()
+    scenes.SCENES["tufts"]()
+    ours = read()
+    ball = bpy.data.objects["Sphere"]
+    bpy.context.view_layer.objects.active = ball
+    for one in bpy.data.objects:
+        one.select_set(one == ball)
+    bpy.ops.object.duplicates_make_real()
+    ball.modifiers.clear()
+    theirs = exported(tmp_path, export_apply=True)
+    places = np.array([one.transform for one in theirs.objects])
+    order = [np.abs(places - one.transform).max(axis=(1, 2)).argmin() for one in ours.objects]
+    assert sorted(order) == list(range(len(theirs.objects)))
+    theirs = with_transforms_of(ours, replace(theirs, objects=tuple(theirs.objects[number] for number in order)))
     bounds = bounds_of(ours)
     np.testing.assert_array_equal(shown_colours(ours, bounds), shown_colours(theirs, bounds))
 
@@ -170,6 +203,27 @@ def test_wrong_properties_are_refused(key, value, problem):
     with pytest.raises(voxrt.AssetError, match="scene: ") as refused:
         read()
     assert str(refused.value) == f"scene: {problem}"
+
+
+def test_vertices_that_are_nowhere_are_refused():
+    scenes.empty_file()
+    scenes.cube().data.vertices[5].co = (0, float("nan"), 0)
+    with pytest.raises(voxrt.AssetError, match="scene: object 'cube', vertex 5: its coordinates are not finite; dele"):
+        read()
+
+
+def test_emission_is_as_bright_as_its_strength():
+    """Linear 0.25 of it is 188 of 255 at twice the strength; what is brighter than white is clamped, and counted."""
+    for strength, colour, clamped in ((2.0, (255, 188, 0), 0), (8.0, (255, 255, 0), 1)):
+        scenes.empty_file()
+        lamp = scenes.paint("lamp", (0, 0, 0))
+        shader = lamp.node_tree.nodes["Principled BSDF"]
+        shader.inputs["Emission Color"].default_value = (0.5, 0.25, 0, 1)
+        shader.inputs["Emission Strength"].default_value = strength
+        scenes.cube(material=lamp)
+        scene = read()
+        assert scene.materials[1].colour == colour
+        assert [one.count for one in scene.warnings if one.kind == "colour-range"] == [1] * clamped
 
 
 def test_a_scene_without_meshes_is_refused():

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import base64
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from fakes.box_scenes import boxes, view_of
+from fakes.box_scenes import boxes, scene_of, view_of
 from fakes.device import FakeDevice
 from fakes.frame_server import controlled, frame_where, served
+from oracles import worlds
+from oracles.cuts import memory_of
 
 from voxrt.board.edited_scene import rom_of
 from voxrt.board.errors import DeviceError, Refused
@@ -146,6 +149,92 @@ async def test_two_viewers_undo_their_own_edits():
         await show(one, view)
         expected = render(renderer.world.rom(), view.camera, view.size, engine="model").colour
         assert (await picture_after(other, one._requests) == expected).all()
+
+
+async def test_edits_of_one_stroke_are_undone_together():
+    scene = boxes(1)
+    begin = to_dense(rom_of(scene).octree)
+    async with editing(scene) as (server, client), open_client(server.url) as viewer:
+        renderer = server.session.renderer
+
+        async def set_voxel(one, x, stroke):
+            return await one.edit({"op": "set", "points": [[x, 15, 15]], "materials": 3}, stroke=stroke)
+
+        def is_set():
+            return [bool(cell == 3) for cell in to_dense(renderer.world.rom().octree)[:8, 15, 15]]
+
+        for x, stroke in enumerate([7, 7, 7, 0, 0, 8]):
+            figures = await set_voxel(client, x, stroke)
+        assert (figures["undo"], figures["redo"]) == (4, 0)
+        await client.request("release")
+        await viewer.take_control()
+        await set_voxel(viewer, 6, 8)  # of another author
+        await viewer.request("release")
+        await client.take_control()
+        figures = await set_voxel(client, 7, 8)  # the stroke of another is between
+        assert (figures["undo"], is_set()) == (5, [True] * 8)
+        expected = [[True] * 7 + [False], [True] * 5 + [False, True, False], [True] * 4 + [False] * 2 + [True, False]]
+        expected += [[True] * 3 + [False] * 3 + [True, False], [False] * 6 + [True, False]]
+        for number, one in enumerate(expected, 1):
+            assert (await client.edit({"op": "undo"}))["redo"] == number
+            assert is_set() == one
+        await client.edit({"op": "redo"})
+        assert is_set() == expected[3]
+        with pytest.raises(Refused, match="is no request"):
+            await client.edit({"op": "undo"}, stroke=-1)
+        after = to_dense(renderer.world.rom().octree)
+        after[:8, 15, 15] = begin[:8, 15, 15]
+        np.testing.assert_array_equal(after, begin)
+
+
+def cells_of(solid):
+    words = np.frombuffer(base64.b64decode(solid["words"]), "<u4").astype(np.uint32)
+    return to_dense(Octree(solid["depth"], words))
+
+
+async def test_boxes_to_walk_in_are_those_of_the_voxels():
+    scene, rng = boxes(1), np.random.default_rng(4)
+    async with editing(scene) as (server, client):
+        cube = to_dense(rom_of(scene).octree)
+        for turn in range(40):
+            if turn == 20:
+                await client.edit(DIG)
+                cube = to_dense(server.session.renderer.world.rom().octree)
+            low = rng.integers(-20, 20, 3)
+            high = low + rng.integers(1, 30, 3)
+            found = cells_of((await client.request("solid", low=low.tolist(), high=high.tolist()))["solid"])
+            expected = np.zeros_like(found)
+            around = np.zeros((80, 80, 80), np.uint8)
+            around[20:36, 20:36, 20:36] = cube != 0
+            sides = high - low
+            expected[: sides[0], : sides[1], : sides[2]] = around[tuple(map(slice, low + 20, high + 20))]
+            np.testing.assert_array_equal(found, expected)
+
+
+async def test_boxes_to_walk_in_have_bounds():
+    rng = np.random.default_rng(5)
+    noise = scene_of(memory_of(worlds.noise(6, 0.5, 1)), 6)
+    async with editing(noise, ModelDevice(capacity=400_000)) as (server, client):
+        for low, high, problem in (
+            ([0, 0, 0], [64, 64, 64], "the most; make it smaller"),
+            ([0, 0, 0], [65537, 1, 1], "cannot be cut out; make it smaller"),
+            ([0, 0, 0], [0, 1, 1], "cannot be cut out"),
+            ([2**40, 0, 0], [2**40 + 1, 1, 1], "out of reach|low"),
+            ([0, 0], [1, 1, 1], "is no request"),
+            ([4, 0, 0], [1, 1, 1], "below its start"),
+        ):
+            with pytest.raises(Refused, match=problem) as refused:
+                await client.request("solid", low=low, high=high)
+            assert "\n" not in str(refused.value)
+        low = rng.integers(0, 48, 3)
+        await client.request("solid", low=low.tolist(), high=(low + 16).tolist())
+    solid = replace(boxes(1), depth=16, words=np.array([0xFFFFFF01], np.uint32))
+    async with editing(solid) as (server, client):
+        with pytest.raises(Refused, match="too many different octants; make it smaller"):
+            await client.request("solid", low=[1, 1, 1], high=[65535, 65535, 65535])
+        async with open_client(server.url) as viewer:
+            with pytest.raises(Refused, match="take control first"):
+                await viewer.request("solid", low=[0, 0, 0], high=[1, 1, 1])
 
 
 async def test_rays_find_edited_voxels():

@@ -176,6 +176,12 @@ def test_the_wheel_chooses_and_a_held_button_repeats(page):
     browser.cdp("Input.dispatchMouseEvent", type="mousePressed", buttons=1, **pressed)
     page.until_edits(3)
     browser.cdp("Input.dispatchMouseEvent", type="mouseReleased", **pressed)
+    browser.draws()
+    edits = page.renderer.edits(None)["number"]
+    browser.keys(["\ue009", "z"], 0.01)  # all of it is one stroke
+    page.until_edits(edits + 1)
+    page.equals()
+    assert browser.until(f"{UNDO}.disabled")
 
 
 def test_a_finger_taps_and_rests(page):

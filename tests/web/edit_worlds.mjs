@@ -13,6 +13,10 @@ await answer(({ words, depth, materials, limits, steps, camera, size }) => {
   let live = 0;
   const results = steps.map(([call, ...values]) => {
     try {
+      if (call === "stroke") {
+        world.stroke = values[0];
+        return null;
+      }
       if (call !== "commit") return world[call](...values) ?? null;
       const patch = world.commit();
       picture.applyPatch(patch);

@@ -60,6 +60,11 @@ def textured_gltf(folder: Path, **how: object) -> list[Path]:
     writer.show(mesh=second, name="second", translation=[2, 0, 0])
     writer.show(mesh=first, name="third", translation=[0, 2, 0], scale=[0.5, 0.5, 0.5])
     writer.show(mesh=writer.mesh(corners, material=1), name="fourth", translation=[2, 2, 0])
+    lamp = {"pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1]}, "emissiveFactor": [0.5, 0.25, 0.1]}
+    strong = {"KHR_materials_emissive_strength": {"emissiveStrength": 1.7}}
+    writer.add("materials", {"name": "lamp", **lamp, "extensions": strong})
+    tinted = writer.accessor(tints, "u1", normalized=True)  # which changes nothing
+    writer.show(mesh=writer.mesh(corners, material=2, COLOR_0=tinted), name="fifth", translation=[4, 2, 0])
     return [writer.save(folder / "box.gltf"), folder / "map.png"]
 
 

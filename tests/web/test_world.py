@@ -69,6 +69,8 @@ def random_steps(rng: np.random.Generator, depth: int, count: int) -> list[list[
                 steps.append(["pick", origin.tolist(), (aim + (aim == 0)).tolist()])
         if rng.random() < 0.4:
             steps.append(["commit"])
+        if rng.random() < 0.4:
+            steps.append(["stroke", int(rng.integers(3))])
     return [*steps, ["commit"]]
 
 
@@ -83,6 +85,9 @@ def natively(world: World, step: list[Any]) -> Any:
         case ["pick", origin, direction]:
             found = pick(world, np.array(origin) / 16, direction)
             return found and as_picked(found)
+        case ["stroke", number]:
+            world.stroke = number
+            return None
         case [call]:
             return getattr(world, call)()
     raise AssertionError(step)

@@ -44,6 +44,7 @@ def board_scene(blob: Blob) -> Scene:
         blob.animation.period if blob.animation else None,
         tuple(map(str, blob.provenance.warnings)),
         tuple(material.name for material in rom.materials),
+        None if rom.grid is None else rom.grid.voxel_size,
     )
 
 

@@ -62,6 +62,11 @@ export class World {
     return this.#materials.push(added) - 1;
   }
 
+  /** Edits in a row of one stroke, a whole number other than 0, are undone together. @param {number} number */
+  set stroke(number) {
+    this.#voxrt.checked(this.#voxrt.wasm.vx_world_stroke(number));
+  }
+
   /** Give voxels their materials; where one repeats, the last counts. @param {ArrayLike<number>} points three whole
    * numbers each @param {ArrayLike<number>} materials ids */
   set(points, materials) {

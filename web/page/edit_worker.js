@@ -1,7 +1,6 @@
 // The world that is edited, off the page's thread: tools act where a ray hits, and patches come out.
-//
-// Edits of one stroke, as those while a button is held, are undone together.
 
+import { around, boxOf, brush, meet } from "./brush.js";
 import { Voxrt } from "./voxrt/voxrt.js";
 import { World } from "./voxrt/world.js";
 import { answerWith } from "./worker_answers.js";
@@ -19,7 +18,7 @@ const WORDS = 2 ** 26; // of the memory at least: 256 MiB
 const STEPS = 1000; // of undo
 /** @type {Box} */ const NOWHERE = [Array(3).fill(0), Array(3).fill(0)];
 
-/** @typedef {{ stroke: number, edits: number, box: Box }} Done a stroke */
+/** @typedef {{ stroke: number, box: Box }} Done a step of undo, and where its voxels are */
 /** @type {{ world: World | null, live: number, done: Done[], undone: Done[] }} */
 const state = { world: null, live: 0, done: [], undone: [] };
 
@@ -37,32 +36,12 @@ function patch() {
   return made;
 }
 
-/** @param {Box} one @param {Box} other @returns {Box} */ const around = ([low, high], [otherLow, otherHigh]) => [
-  low.map((place, axis) => Math.min(place, otherLow[axis])),
-  high.map((place, axis) => Math.max(place, otherHigh[axis])),
-];
-
-/** @param {Box} one @param {Box} other */ const meet = ([low, high], [otherLow, otherHigh]) =>
-  low.every((place, axis) => place < otherHigh[axis] && otherLow[axis] < high[axis]);
-
-/** The voxels of a tool around one. @param {Vector} voxel @param {number} size */ function brush(voxel, size) {
-  if (size === 1) return { box: { low: voxel, high: voxel.map((place) => place + 1) } };
-  return { sphere: { centre: voxel.map((place) => place + 0.5), radius: size / 2 } };
-}
-
-/** @param {Vector} voxel @param {number} size @returns {Box} */ const boxOf = (voxel, size) => [
-  voxel.map((place) => Math.floor(place + (1 - size) / 2)),
-  voxel.map((place) => Math.ceil(place + (1 + size) / 2)),
-];
-
 /** Go back, or forth again, by a stroke. @param {Done[]} from @param {Done[]} to @param {() => boolean} step */
 function move(from, to, step) {
-  const last = from.at(-1);
-  if (!last) return { hit: true, box: NOWHERE, patch: null };
-  let edits = 0;
-  while (edits < last.edits && step()) edits++; // the first one alone can find no room
-  from.pop();
-  if (edits) to.push({ ...last, edits });
+  const turned = step();
+  const last = from.pop();
+  if (!turned || !last) return { hit: true, box: NOWHERE, patch: null };
+  to.push(last);
   return { hit: true, box: last.box, patch: patch() };
 }
 
@@ -88,13 +67,14 @@ const calls = {
     if (!voxel) return { hit: found !== null, box: NOWHERE, patch: null };
     const box = boxOf(voxel, size);
     if (tool === "build" && keepOut && meet(box, keepOut)) return { hit: true, box, patch: null };
+    begun().stroke = stroke;
     if (tool === "paint") begun().paint(brush(voxel, size), material);
     else begun().fill(brush(voxel, size), tool === "dig" ? 0 : material);
     const made = patch();
     if (made) {
       const last = state.done.at(-1);
-      if (last?.stroke === stroke) Object.assign(last, { edits: last.edits + 1, box: around(last.box, box) });
-      else state.done.push({ stroke, edits: 1, box });
+      if (last?.stroke === stroke) last.box = around(last.box, box);
+      else state.done.push({ stroke, box });
       if (state.done.length > STEPS) state.done.shift();
       state.undone = [];
     }
@@ -114,7 +94,8 @@ const calls = {
   },
 
   figures() {
-    return { ...begun().figures(), undo: state.done.length, redo: state.undone.length };
+    const [undo, redo] = begun().steps;
+    return { ...begun().figures(), undo, redo };
   },
 
   words() {

@@ -3,7 +3,7 @@
 import { Hand } from "./hand.js";
 import { boundsOf, worldOf } from "./memory.js";
 import { partCamera, partOf } from "./projection.js";
-import { PatchedWords } from "./solids.js";
+import { PatchedWords } from "./patched_words.js";
 /** @import { App } from "./app.js" @import { Box } from "./camera.js" @import { Shown } from "./memory.js" */
 /** @import { Edited, EditCalls, Stroke } from "./edit_worker.js" @import { Vector } from "./vectors.js" */
 

@@ -99,8 +99,11 @@ export class GltfLooks {
     const glossy = material.extensions?.[GLOSSY];
     /** @type {number[]} */ let factor = (glossy ? glossy.diffuseFactor : base.baseColorFactor) ?? [1, 1, 1, 1];
     let texture = glossy ? glossy.diffuseTexture : base.baseColorTexture;
-    /** @type {number[]} */ const emission = material.emissiveFactor ?? [0, 0, 0];
-    if (Math.max(...factor.slice(0, 3)) <= 0 && Math.max(...emission) > 0) {
+    const strength = material.extensions?.KHR_materials_emissive_strength?.emissiveStrength ?? 1;
+    /** @type {number[]} */ const glow = material.emissiveFactor ?? [0, 0, 0];
+    const emission = glow.map((part) => part * strength);
+    const emits = Math.max(...factor.slice(0, 3)) <= 0 && Math.max(...emission) > 0;
+    if (emits) {
       factor = [...emission, factor[3]]; // it reflects nothing, and shows what it emits
       texture = material.emissiveTexture;
     }
@@ -116,6 +119,7 @@ export class GltfLooks {
       texture,
       cutoff: cutoffs[material.alphaMode ?? "OPAQUE"] ?? 0,
       mirror: Boolean(extras.voxrt_reflect),
+      emits,
       isNamed: Boolean(extras.voxrt_material),
     };
   }
@@ -129,9 +133,9 @@ export class GltfLooks {
   /** The look of a primitive; null where its colour is uniform. @param {number | undefined} index @param
    * {BufferGeometry} geometry */
   appearance(index, geometry) {
-    const plain = { name: "default", factor: [1, 1, 1, 1], texture: undefined, cutoff: 0, mirror: false };
-    const { name, factor, texture: info, cutoff, mirror } = index === undefined ? plain : this.properties(index);
-    const colourOf = this.#colours(geometry);
+    const plain = { name: "default", factor: [1, 1, 1, 1], texture: undefined, cutoff: 0, mirror: false, emits: false };
+    const { name, factor, texture: info, cutoff, mirror, emits } = index === undefined ? plain : this.properties(index);
+    const colourOf = this.#colours(geometry, emits);
     const uvOf = info && this.#textures.get(info.index) ? this.#coordinates(info, geometry) : null;
     const texture = (uvOf && info && this.#textures.get(info.index)) ?? null;
     if (!texture && !colourOf) return null;
@@ -141,10 +145,16 @@ export class GltfLooks {
     return { entry, uvOf, colourOf };
   }
 
-  /** @param {BufferGeometry} geometry @returns {Setter | null} */ #colours(geometry) {
+  /** Only their alpha counts for what emits. @param {BufferGeometry} geometry @param {boolean} emits @returns {Setter |
+   * null} */
+  #colours(geometry, emits) {
     const attribute = geometry.getAttribute("color");
     if (!attribute) return null;
-    const set = colours(attribute);
+    const read = colours(attribute);
+    /** @type {Setter} */ const set = (vertex, out) => {
+      read(vertex, out);
+      if (emits) Object.assign(out, [1, 1, 1]);
+    };
     const one = [0, 0, 0, 0];
     let [white, numbers] = [true, true];
     for (let i = 0; i < attribute.count; i++) {

@@ -12,7 +12,7 @@ import { makePilot } from "./pilot.js";
 import { save } from "./save.js";
 import { sourceOfAddress, sourceOfExample, sourceOfFiles } from "./sources.js";
 import { makeTools } from "./tools.js";
-/** @import { Site } from "./app.js" @import { Walker } from "./walker.js" */
+/** @import { Site } from "./app.js" */
 
 const CLICK = 5; // pixels that a click may move
 
@@ -129,29 +129,14 @@ function steer(app) {
     if (!isPressed($("inspect")) && !isPressed($("walk")) && !document.body.classList.contains("editing"))
       app.focusAt(x, y);
   });
-  /** @type {Walker | null} */ let walker = null;
   const load = once(async () => {
-    const [{ Walker }, { EditMode }] = await Promise.all([import("./walker.js"), import("./edit_mode.js")]);
-    walker = new Walker(app, flight);
-    return { walker, edit: new EditMode(app, gestures, commands, walker) };
+    const { EditMode } = await import("./edit_mode.js");
+    return new EditMode(app, gestures, flight, commands);
   });
   const fail = (/** @type {Error} */ { message }) => notice("error", "The scene cannot be edited", message);
-  $("edit-toggle").onclick = () => load().then(({ edit }) => edit.toggle(), fail);
-  $("walk").onclick = () => load().then(({ walker }) => walker.start(), fail);
-  const step = () => {
-    flight.step();
-    walker?.step();
-  };
-  const isMoving = () => flight.active || Boolean(walker?.active);
-  return {
-    gestures,
-    flight: {
-      step,
-      get active() {
-        return isMoving();
-      },
-    },
-  };
+  $("edit-toggle").onclick = () => load().then((edit) => edit.toggle(), fail);
+  $("walk").onclick = () => load().then((edit) => edit.walker.start(), fail);
+  return { gestures, flight };
 }
 
 /** A promise that is made with the first call. @template T @param {() => Promise<T>} make */ function once(make) {

@@ -61,6 +61,14 @@ EXPORT(vx_world_end) void vx_world_end() {
     words = {};
 }
 
+/// The stroke of the edits from now on: those in a row of one stroke, other than 0, are one step of undo. Returns 0.
+EXPORT(vx_world_stroke) int vx_world_stroke(uint32_t stroke) {
+    return guarded([&] {
+        begun().set_stroke(stroke);
+        return 0;
+    });
+}
+
 EXPORT(vx_world_set) int vx_world_set(const int32_t* points, const uint8_t* materials, size_t count) {
     return guarded([&]() -> int {
         const std::vector<int64_t> places(points, points + 3 * count);

@@ -78,12 +78,36 @@ bool bind_paste(PythonWorld& world, const Vector<Word>& words, unsigned depth, c
     return with(world, [&](World& one) { return one.paste(piece, size, at, quarters, materials); });
 }
 
-nb::object bind_copy(PythonWorld& world, const Place& low, const Place& high) {
+void require_box(const Place& low, const Place& high) {
     for (unsigned axis = 0; axis < 3; ++axis)
         require(high[axis] - low[axis] <= 1 << kMaxDepth, "the box has more than 2**16 voxels per side");
     require_reach({&low, &high}, 1 << 20);
-    World::Copied copied = with(world, [&](World& one) { return one.copy({low, high}); });
-    return nb::make_tuple(words_to_numpy(std::move(copied.words)), copied.depth);
+}
+
+nb::object to_tuple(Copied&& found) { return nb::make_tuple(words_to_numpy(std::move(found.words)), found.depth); }
+
+nb::object bind_copy(PythonWorld& world, const Place& low, const Place& high) {
+    require_box(low, high);
+    return to_tuple(with(world, [&](World& one) { return one.copy({low, high}); }));
+}
+
+// What is solid in a box, as one material.
+Copied solid_box(const Memory& memory, const Place& low, const Place& high, std::size_t most) {
+    std::array<std::uint8_t, 256> materials;
+    materials.fill(1);
+    materials[0] = 0;
+    return copied(memory, {low, high}, materials, most);
+}
+
+nb::object bind_solid_box(const Vector<Word>& words, unsigned depth, const Place& low, const Place& high,
+                          std::size_t most) {
+    require_box(low, high);
+    return to_tuple(run_on(words, depth, [&](const Memory& memory) { return solid_box(memory, low, high, most); }));
+}
+
+nb::object bind_solid_box_of_world(PythonWorld& world, const Place& low, const Place& high, std::size_t most) {
+    require_box(low, high);
+    return to_tuple(with(world, [&](World& one) { return solid_box(one.memory().memory(), low, high, most); }));
 }
 
 nb::object bind_materials_at(PythonWorld& world, const Rows<std::int64_t, 3>& points) {
@@ -145,6 +169,7 @@ nb::object bind_figures(PythonWorld& world) {
 void bind_world(nb::module_& m) {
     patch_type = NamedTuple(m, "Patch", {"root", "root_word", "addresses", "blocks"}, "What World.commit() returns.");
     figures_type = NamedTuple(m, "WorldFigures", {"blocks", "kept", "free"}, "What World.figures() returns.");
+    m.def("solid_box", &bind_solid_box, "words"_a.noconvert(), "depth"_a, "low"_a, "high"_a, "most"_a);
     nb::class_<PythonWorld>(m, "World")
         .def(nb::new_(&make_world), "words"_a.noconvert(), "depth"_a, "most_words"_a, "undo_steps"_a,
              "root"_a = nb::none())
@@ -154,6 +179,7 @@ void bind_world(nb::module_& m) {
         .def("change_capsule", &bind_change_capsule, "start"_a, "end"_a, "radius"_a, "material"_a, "solid_only"_a)
         .def("paste", &bind_paste, "words"_a.noconvert(), "depth"_a, "size"_a, "at"_a, "quarters"_a, "materials"_a)
         .def("copy", &bind_copy, "low"_a, "high"_a)
+        .def("solid_box", &bind_solid_box_of_world, "low"_a, "high"_a, "most"_a)
         .def("materials_at", &bind_materials_at, "points"_a.noconvert())
         .def("undo", [](PythonWorld& world) { return with(world, [](World& one) { return one.undo(); }); })
         .def("redo", [](PythonWorld& world) { return with(world, [](World& one) { return one.redo(); }); })
@@ -162,6 +188,10 @@ void bind_world(nb::module_& m) {
             "set_author",
             [](PythonWorld& world, std::uint32_t author) { with(world, [=](World& one) { one.set_author(author); }); },
             "author"_a)
+        .def(
+            "set_stroke",
+            [](PythonWorld& world, std::uint32_t stroke) { with(world, [=](World& one) { one.set_stroke(stroke); }); },
+            "stroke"_a)
         .def("commit", &bind_commit)
         .def("live_roots", &bind_live_roots)
         .def(

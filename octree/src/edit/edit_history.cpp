@@ -3,11 +3,23 @@
 #include "octant_edits.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace voxrt::octree {
 
-void EditHistory::add(std::uint32_t author, Word before, Word after) {
-    steps_.push_back({author, before, after, after, false});
+void EditHistory::add(std::uint32_t author, std::uint32_t stroke, Word before, Word after) {
+    if (stroke != 0 && !steps_.empty()) {
+        Step& last = steps_.back();
+        // Where a step before it was undone since, more than this edit differs from what the stroke has made.
+        if (last.author == author && last.stroke == stroke && !last.undone && last.after == before) {
+            for (Word* kept : {&last.after, &last.result}) {
+                blocks_.retain(after);
+                blocks_.release(std::exchange(*kept, after));
+            }
+            return;
+        }
+    }
+    steps_.push_back({author, stroke, before, after, after, false});
     for (const Word word : {before, after, after})
         blocks_.retain(word);
     if (steps_.size() == 1) {

@@ -19,9 +19,9 @@ public:
     /// The steps that are kept at most, those that are undone among them; the oldest are forgotten first.
     EditHistory(CountedBlocks& blocks, std::size_t limit) : blocks_(blocks), limit_(limit) {}
 
-    /// An edit that made `after` of `before`, which is the current root. Steps of its author that are undone are
-    /// forgotten.
-    void add(std::uint32_t author, Word before, Word after);
+    /// An edit that made `after` of `before`, which is the current root. It joins the newest step where that is of the
+    /// same author and stroke, and `stroke` is not 0. Steps of its author that are undone are forgotten.
+    void add(std::uint32_t author, std::uint32_t stroke, Word before, Word after);
     void forget() noexcept;
 
     /// Steps of an author that can be undone, or be done again.
@@ -43,7 +43,7 @@ public:
 
 private:
     struct Step {
-        std::uint32_t author;
+        std::uint32_t author, stroke;
         Word before, after; // roots: the edit is the voxels in which they differ
         Word result;        // the root with all steps up to this one
         bool undone;

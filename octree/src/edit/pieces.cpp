@@ -1,10 +1,12 @@
 #include "pieces.h"
 
+#include "../pool/breadth_first.h"
 #include "shapes.h"
 
 #include <voxrt/voxelize/work/interrupt.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <unordered_map>
 
 namespace voxrt::octree {
@@ -12,8 +14,9 @@ namespace {
 
 class Cutting {
 public:
-    Cutting(const Memory& memory, const Box& box, const std::array<std::uint8_t, 256>& materials, BlockPool& pool)
-        : memory_(memory), box_(box), materials_(materials), pool_(pool) {}
+    Cutting(const Memory& memory, const Box& box, const std::array<std::uint8_t, 256>& materials, BlockPool& pool,
+            std::size_t most)
+        : memory_(memory), box_(box), materials_(materials), pool_(pool), left_(most) {}
 
     Node node(Word word, unsigned level, const Place& corner) {
         const Cover covered = word == kEmpty ? Cover::none : cover(box_, corner, level);
@@ -21,7 +24,7 @@ public:
             return kEmpty;
         if (covered == Cover::all)
             return whole(word, level);
-        voxelize::WorkCounter::current().count_step();
+        count_step();
         Block children;
         for (unsigned octant = 0; octant < 8; ++octant)
             children[octant] = node(is_leaf(word) ? word : memory_.child(word, octant, level), level - 1,
@@ -35,17 +38,24 @@ private:
             return leaf(materials_[material(word)]);
         if (const auto entry = whole_.find(word); entry != whole_.end())
             return entry->second;
-        voxelize::WorkCounter::current().count_step();
+        count_step();
         Block children;
         for (unsigned octant = 0; octant < 8; ++octant)
             children[octant] = whole(memory_.child(word, octant, level), level - 1);
         return whole_[word] = pool_.intern(children);
     }
 
+    void count_step() {
+        voxelize::WorkCounter::current().count_step();
+        if (left_-- == 0)
+            throw std::length_error("the box has too many different octants");
+    }
+
     Memory memory_;
     const Box& box_;
     const std::array<std::uint8_t, 256>& materials_;
     BlockPool& pool_;
+    std::size_t left_; // octants that may be looked into
     std::unordered_map<Word, Node> whole_;
 };
 
@@ -135,8 +145,20 @@ Node octant_of(const BlockPool& pool, Node root, unsigned depth, const Place& pl
 
 } // namespace
 
-Node cut_out(const Memory& memory, const Box& box, const std::array<std::uint8_t, 256>& materials, BlockPool& pool) {
-    return Cutting(memory, box, materials, pool).node(memory.root(), memory.depth, {0, 0, 0});
+Node cut_out(const Memory& memory, const Box& box, const std::array<std::uint8_t, 256>& materials, BlockPool& pool,
+             std::size_t most) {
+    return Cutting(memory, box, materials, pool, most).node(memory.root(), memory.depth, {0, 0, 0});
+}
+
+Copied copied(const Memory& memory, const Box& box, const std::array<std::uint8_t, 256>& materials, std::size_t most) {
+    unsigned depth = 1;
+    for (unsigned axis = 0; axis < 3; ++axis)
+        while (std::int64_t{1} << depth < box.high[axis] - box.low[axis])
+            ++depth;
+    BlockPool pool;
+    const Node part = cut_out(memory, box, materials, pool, most);
+    const Node node = moved(part, memory.depth, {-box.low[0], -box.low[1], -box.low[2]}, depth, pool);
+    return {breadth_first_words(pool, node), depth};
 }
 
 Node turned(Node root, unsigned quarters, BlockPool& pool) {

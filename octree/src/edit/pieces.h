@@ -9,13 +9,28 @@
 #include "../query/query.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace voxrt::octree {
 
+inline constexpr std::size_t kEndless = ~std::size_t{0};
+
 /// What `memory` has inside `box`, of the same depth; `materials` replaces each material by another. Cost: the octants
-/// on the faces of the box, and the blocks inside, each once.
-Node cut_out(const Memory& memory, const Box& box, const std::array<std::uint8_t, 256>& materials, BlockPool& pool);
+/// on the faces of the box, and the blocks inside, each once. Throws std::length_error where these are more than
+/// `most`.
+Node cut_out(const Memory& memory, const Box& box, const std::array<std::uint8_t, 256>& materials, BlockPool& pool,
+             std::size_t most = kEndless);
+
+/// The memory of a box of at least one voxel, whose lowest voxel becomes 0, 0, 0, and its depth: the least.
+struct Copied {
+    Words words;
+    unsigned depth;
+};
+
+/// What cut_out() takes, as a memory of its own; it throws the same.
+Copied copied(const Memory& memory, const Box& box, const std::array<std::uint8_t, 256>& materials,
+              std::size_t most = kEndless);
 
 /// An octree turned by quarters of a turn around the y axis of its world: one takes the z axis to the x axis, and the x
 /// axis to the opposite of the z axis. Cost: its blocks, each once.

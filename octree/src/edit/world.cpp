@@ -101,16 +101,7 @@ bool World::paste(const Memory& piece, const Place& size, const Place& at, unsig
     return change([&] { return overlay(blocks_, root_, pool, node); });
 }
 
-World::Copied World::copy(const Box& box) const {
-    unsigned depth = 1;
-    for (unsigned axis = 0; axis < 3; ++axis)
-        while (std::int64_t{1} << depth < box.high[axis] - box.low[axis])
-            ++depth;
-    BlockPool pool;
-    const Node part = cut_out(memory().memory(), box, same_materials(), pool);
-    const Node node = moved(part, depth_, {-box.low[0], -box.low[1], -box.low[2]}, depth, pool);
-    return {breadth_first_words(pool, node), depth};
-}
+Copied World::copy(const Box& box) const { return copied(memory().memory(), box, same_materials()); }
 
 VerifiedMemory World::memory() const { return VerifiedMemory::trusted(blocks_.stored().memory(depth_, root_)); }
 
@@ -257,7 +248,7 @@ template <typename Edit> bool World::change(Edit edit) {
     if (!root || *root == root_)
         return root.has_value();
     blocks_.retain(*root);
-    history_.add(author_, root_, *root);
+    history_.add(author_, stroke_, root_, *root);
     blocks_.release(std::exchange(root_, *root));
     return true;
 }

@@ -18,6 +18,7 @@
 #include "counted_blocks.h"
 #include "edit_history.h"
 #include "live_roots.h"
+#include "pieces.h"
 #include "shapes.h"
 
 #include <memory>
@@ -88,15 +89,14 @@ public:
                              const std::array<std::int64_t, 3>& at, unsigned quarters,
                              const std::array<std::uint8_t, 256>& materials);
 
-    /// The memory of a box of at least one voxel, whose lowest voxel becomes 0, 0, 0, and its depth: the least.
-    struct Copied {
-        Words words;
-        unsigned depth;
-    };
+    /// What a box has: see pieces.h.
     Copied copy(const Box& box) const;
 
     /// Edits, undo() and redo() are by this author from now on.
     void set_author(std::uint32_t author) { author_ = author; }
+
+    /// Edits in a row by one author and of one stroke are one step of undo; those of stroke 0 are one each.
+    void set_stroke(std::uint32_t stroke) { stroke_ = stroke; }
 
     /// Takes the last edit of the author back, and makes it again. False where there is no step. An edit ends what
     /// redo() has of its author. Edits of others stay: see edit_history.h. None where the memory has no room for the
@@ -153,7 +153,7 @@ private:
     CountedBlocks blocks_;
     Word root_ = kEmpty;
     EditHistory history_;
-    std::uint32_t author_ = 0;
+    std::uint32_t author_ = 0, stroke_ = 0;
     std::shared_ptr<LiveRoots> roots_ = std::make_shared<LiveRoots>();
     std::vector<std::size_t> tables_;      // addresses of blocks of root words
     std::vector<std::size_t> free_places_; // for root words; there is one while the current root is not committed

@@ -50,6 +50,8 @@ public:
         const Cells before = cells_;
         author_ = static_cast<std::uint32_t>(choose_(kAuthors));
         world_->set_author(author_);
+        stroke_ = limits_.words < WorldLimits().words ? 0 : static_cast<std::uint32_t>(choose_(3));
+        world_->set_stroke(stroke_);
         refused_ = false;
         switch (choose_(8)) {
         case 0:
@@ -96,7 +98,7 @@ public:
 private:
     static constexpr std::uint32_t kAuthors = 3;
     struct Made {
-        std::uint32_t author;
+        std::uint32_t author, stroke;
         Cells before, after;
         bool undone;
     };
@@ -113,8 +115,14 @@ private:
     }
 
     void remember(const Cells& before) {
+        if (Made* last = history_.empty() ? nullptr : &history_.back();
+            last != nullptr && stroke_ != 0 && !last->undone && last->author == author_ && last->stroke == stroke_ &&
+            last->after == before) {
+            last->after = cells_;
+            return;
+        }
         std::erase_if(history_, [&](const Made& one) { return one.undone && one.author == author_; });
-        history_.push_back({author_, before, cells_, false});
+        history_.push_back({author_, stroke_, before, cells_, false});
         std::size_t steps = 0;
         for (std::uint32_t author = 0; author < kAuthors; ++author)
             steps += world_->undo_steps(author) + world_->redo_steps(author);
@@ -193,7 +201,7 @@ private:
         const Place low{any(-2, side_), any(-2, side_), any(-2, side_)};
         const Place size{any(1, side_ + 2), any(1, side_ + 2), any(1, side_ + 2)};
         const Place at{any(-side_, side_), any(-side_, side_), any(-side_, side_)};
-        const World::Copied copied = world_->copy({low, {low[0] + size[0], low[1] + size[1], low[2] + size[2]}});
+        const Copied copied = world_->copy({low, {low[0] + size[0], low[1] + size[1], low[2] + size[2]}});
         std::array<std::uint8_t, 256> materials;
         for (unsigned id = 0; id < 256; ++id)
             materials[id] = static_cast<std::uint8_t>(id == 2 ? 3 : id);
@@ -284,7 +292,7 @@ private:
     std::vector<std::thread> readers_;
     std::atomic<bool> wrong_{false};
     bool refused_ = false, turned_ = false;
-    std::uint32_t author_ = 0;
+    std::uint32_t author_ = 0, stroke_ = 0;
     WorldLimits limits_;
     Cells begin_; // before the first edit of history_
     std::vector<Made> history_;

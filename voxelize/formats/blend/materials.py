@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from voxrt.voxelize.formats.authored_properties import PREFIX, MaterialProperties, checked_properties
 from voxrt.voxelize.formats.blend.nodes import Product, output_of, product, source, threshold
+from voxrt.voxelize.formats.colour_range import clamped
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -73,7 +74,7 @@ class Materials:
         name = authored.voxrt_material or material.name
         key = (name, mirror) if authored.voxrt_material else (material.name_full, mirror, "own")
         colour, alpha, rounds = self._shown(material)
-        red, green, blue = (min(max(one, 0.0), 1.0) for one in colour.factor)
+        red, green, blue = clamped(colour.factor, self._log).tolist()
         opacity = min(max(alpha.factor[0], 0.0), 1.0)
         image = alpha.image
         if alpha.attribute is not None and alpha.attribute != colour.attribute:
@@ -148,10 +149,9 @@ def _colour(node: Any, groups: Groups) -> Product | None:
 
 
 def _emitted(colour: Socket, strength: Socket, groups: Groups) -> Product | None:
-    """Return a colour that is emitted; one that is brighter than white keeps its hue."""
+    """Return a colour that is emitted, which may be brighter than white."""
     found, bright = product(colour, groups), product(strength, groups)
     if found is None or bright is None or bright.image or bright.attribute is not None:
         return None
     red, green, blue = (one * bright.factor[0] for one in found.factor)
-    most = max(red, green, blue, 1.0)
-    return Product((red / most, green / most, blue / most), found.image, found.attribute, found.channel)
+    return Product((red, green, blue), found.image, found.attribute, found.channel)

@@ -237,7 +237,7 @@ class SceneReader:
             )
         key = one.data.as_pointer()
         if key not in self._arrays:
-            self._arrays[key] = read_triangles(one.data)
+            self._arrays[key] = self._triangles(one)
         arrays = self._arrays[key]
         row = self._mesh(one, key, arrays, properties)
         collider = None
@@ -247,6 +247,14 @@ class SceneReader:
                 self._colliders[shape] = rigid_collider(one.rigid_body, arrays, self._log)
             collider = self._colliders[shape]
         return _Placed(name, row, transform, properties, collider)
+
+    def _triangles(self, one: Any) -> MeshArrays:
+        arrays = read_triangles(one.data)
+        finite = np.isfinite(arrays.positions).all(axis=1)
+        if not finite.all():
+            place = f"object {one.name!r}, vertex {int(np.argmin(finite))}"
+            raise self._error(place, "its coordinates are not finite", "delete it, or the modifier that makes it")
+        return arrays
 
     def _properties(self, one: Any) -> ObjectProperties | None:
         """Return what an object says to voxrt; None where that is to leave it out."""

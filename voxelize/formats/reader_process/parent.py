@@ -43,6 +43,7 @@ if TYPE_CHECKING:
 
 # Each thread takes memory of its own, whatever it does.
 _ENVIRONMENT = {"MALLOC_ARENA_MAX": "2", "OPENBLAS_NUM_THREADS": "1"}
+_NO_MEMORY = (b"bad_alloc", b"MemoryError", b"alloc returns null")  # of C++, Python and Blender
 _END_SECONDS = 5.0  # that a process may take to end when its message has ended
 _REPAIR = "it is damaged, or made to do harm: repair it or export it again"
 
@@ -152,7 +153,7 @@ def _ended(reader: Reader, path: Path, status: int, printed: bytes, limits: Limi
     if -status in {signal.SIGXCPU, signal.SIGALRM}:
         problem = f"takes more than {limits.seconds:g} seconds to read, which is too long for a file of its size"
         return AssetError(path, problem, fix=f"it is damaged, or made to do harm: {reader.too_slow}")
-    if b"bad_alloc" in printed or b"MemoryError" in printed:
+    if any(words in printed for words in _NO_MEMORY):
         return _too_much_memory(path, limits)
     how = signal.Signals(-status).name if -status in set(signal.Signals) else f"exit status {status}"
     return AssetError(path, f"{reader.library} crashed while it read the file ({how})", fix=_REPAIR)
