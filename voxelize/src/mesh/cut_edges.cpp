@@ -68,17 +68,20 @@ bool overlap(const Vertex& u, const Vertex& v, const Vertex& a, const Vertex& b)
     return dot(p, q) > along; // on one side of the edge
 }
 
-/// Whether the faces at an edge do not pair: more walk it one way than the other. Those that lie upon one another count
-/// once, and of many the first.
+/// Whether the faces at an edge do not pair: more walk it one way than the other. Faces that lie upon one another may
+/// be two sides of one, or of two parts: they are to pair whether they count once or each. Of many the first count.
 bool is_unpaired(uint32_t low, std::span<const EdgeUse> uses, const std::vector<Vertex>& at) {
-    int surplus = 0;
+    int surplus = 0, once = 0;
     uses = uses.first(std::min(uses.size(), kMostFaces));
-    for (size_t i = 0; i < uses.size(); ++i)
+    for (size_t i = 0; i < uses.size(); ++i) {
+        const int way = uses[i].is_upwards ? 1 : -1;
+        surplus += way;
         if (std::none_of(uses.begin(), uses.begin() + ptrdiff_t(i), [&](const EdgeUse& other) {
                 return overlap(at[low], at[uses[0].high], at[other.opposite], at[uses[i].opposite]);
             }))
-            surplus += uses[i].is_upwards ? 1 : -1;
-    return surplus != 0;
+            once += way;
+    }
+    return surplus != 0 || once != 0;
 }
 
 } // namespace
