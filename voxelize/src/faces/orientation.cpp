@@ -4,6 +4,7 @@
 #include "closed_surface.h"
 #include "edge_order.h"
 #include "exact_predicates.h"
+#include "patches.h"
 #include "sheets.h"
 
 namespace voxrt::voxelize {
@@ -156,22 +157,20 @@ private:
         return once_;
     }
 
+    /// Calls visit(low, uses) for the edges of our components, without repeated faces.
+    template <class Visit> void each_edge(Visit&& visit) {
+        edges_.each([&](uint32_t low, Uses uses) {
+            if (is_ours(uses[0].face))
+                visit(low, once_of(uses));
+        });
+    }
+
     /// Joins the sides of faces around edges: around edges of two faces to the sides of pieces, around all to cells.
     void join_sides() {
         pieces_ = DisjointSets(2 * size_t(count_));
         cells_ = DisjointSets(2 * size_t(count_));
-        Sheets sheets(edges_, at_, [this](auto&& visit) {
-            edges_.each([&](uint32_t low, Uses uses) {
-                if (!is_ours(uses[0].face))
-                    return;
-                if (const std::vector<EdgeUse>& pair = once_of(uses); pair.size() == 2)
-                    visit(low, pair[0], pair[1]);
-            });
-        });
-        edges_.each([&](uint32_t low, Uses uses) {
-            if (!is_ours(uses[0].face))
-                return;
-            std::vector<EdgeUse> once = once_of(uses);
+        Sheets sheets(edges_, at_, [this](auto&& visit) { each_edge(visit); });
+        each_edge([&](uint32_t low, std::vector<EdgeUse> once) {
             if (once.size() > 2)
                 sort_about_edge(low, once, at_, [&](uint32_t face) { return sheets.rank_of(face); });
             for (size_t i = 0; i < once.size(); ++i) {
@@ -212,10 +211,26 @@ private:
                 return;
             (outside_in_front == (surplus_[f] > 0) ? component.in_front_of_it : component.behind_it) = true;
         });
+        bool any = false;
         for (Component& component : components_) {
             component.contradicts = component.is_balanced && component.in_front_of_it && component.behind_it;
-            component.is_balanced &= !component.contradicts;
+            any = any || component.contradicts;
         }
+        if (any)
+            deny_contradictions();
+        for (Component& component : components_)
+            component.is_balanced &= !component.contradicts;
+    }
+
+    /// Rounding may put faces at an edge in a wrong order, which a patch that faces outwards shows.
+    void deny_contradictions() {
+        Patches patches(
+            edges_, at_, [this](auto&& visit) { each_edge(visit); },
+            [this](auto&& visit) { each_first([&](uint32_t f, Component&) { visit(f); }); });
+        each_first([&](uint32_t f, Component& component) {
+            const bool in_front = is_inside(front(f), component), behind = is_inside(back(f), component);
+            component.contradicts &= in_front == behind || patches.facing_of(f) * (behind - in_front) >= 0;
+        });
     }
 
     /// Finds cells that such parts enclose together and that are in none of them: an even number of faces is between
