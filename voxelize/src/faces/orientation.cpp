@@ -211,12 +211,9 @@ private:
                 return;
             (outside_in_front == (surplus_[f] > 0) ? component.in_front_of_it : component.behind_it) = true;
         });
-        bool any = false;
-        for (Component& component : components_) {
+        for (Component& component : components_)
             component.contradicts = component.is_balanced && component.in_front_of_it && component.behind_it;
-            any = any || component.contradicts;
-        }
-        if (any)
+        if (std::any_of(components_.begin(), components_.end(), [](const Component& c) { return c.contradicts; }))
             deny_contradictions();
         for (Component& component : components_)
             component.is_balanced &= !component.contradicts;

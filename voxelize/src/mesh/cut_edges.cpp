@@ -89,9 +89,9 @@ public:
     VerticesOnEdges(const std::vector<Vertex>& vertices, const std::vector<bool>& chosen, double room)
         : vertices_(vertices), room_(room), bvh_(boxes_of(vertices, chosen)) {}
 
-    /// Those between the ends of an edge, from `low` on, but for corners of its faces.
-    std::vector<uint32_t> on(uint32_t low, std::span<const EdgeUse> uses) {
-        const Segment segment(vertices_[low], vertices_[uses[0].high], room_);
+    /// Those between the ends of an edge, from `low` to `high`.
+    std::vector<uint32_t> on(uint32_t low, uint32_t high) {
+        const Segment segment(vertices_[low], vertices_[high], room_);
         found_.clear();
         bvh_.find_where([&](const TriangleBox& box) { return segment.meets(box); },
                         [&](uint32_t v) {
@@ -101,8 +101,7 @@ public:
         std::sort(found_.begin(), found_.end());
         std::vector<uint32_t> on_edge;
         for (const auto& [place, v] : found_)
-            if (std::none_of(uses.begin(), uses.end(), [v = v](const EdgeUse& use) { return use.opposite == v; }))
-                on_edge.push_back(v);
+            on_edge.push_back(v);
         return on_edge;
     }
 
@@ -163,7 +162,7 @@ std::optional<MeshEdges> cut_edges(const MeshEdges& edges, const std::vector<Ver
     std::vector<EdgeCut> cuts;
     edges.each([&](uint32_t low, std::span<const EdgeUse> uses) {
         if (is_unpaired(low, uses, vertices))
-            add_cut(cuts, low, uses, ends.on(low, uses));
+            add_cut(cuts, low, uses, ends.on(low, uses[0].high));
     });
     if (cuts.empty())
         return std::nullopt;
@@ -173,7 +172,9 @@ std::optional<MeshEdges> cut_edges(const MeshEdges& edges, const std::vector<Ver
     auto cut = cuts.begin();
     std::vector<EdgeCut> more;
     edges.each([&](uint32_t low, std::span<const EdgeUse> uses) {
-        std::vector<uint32_t> at = all.on(low, uses);
+        std::vector<uint32_t> at = all.on(low, uses[0].high);
+        for (const EdgeUse& use : uses)
+            std::erase(at, use.opposite);
         if (cut != cuts.end() && cut->low == low && cut->high == uses[0].high) {
             if (cut->at.size() > at.size())
                 at = cut->at;
