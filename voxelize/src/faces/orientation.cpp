@@ -58,6 +58,7 @@ struct Component {
     bool is_paired = true;         // each face is there as often for each side, and its pieces have two sides
     uint32_t outside = UINT32_MAX; // a cell
     int128 least = 0;              // its volume
+    int128 authored = 0;           // the signed volume that the file says
     int64_t kept = 0, turned = 0;  // faces that part inside from outside: as authored, the other way around
     double enclosing_area = 0, loose_area = 0;
     bool is_settled() const { return outside != UINT32_MAX && kept + turned > 0 && (!is_balanced || is_two_sided); }
@@ -185,10 +186,10 @@ private:
     /// Finds the cell of least volume in each component.
     void find_outsides() {
         volumes_.assign(2 * size_t(count_), 0);
-        each_first([&](uint32_t f, Component&) {
-            const Corners c = edges_.corners(f);
-            const Vertex& origin = at_[edges_.corners(connected_.find(f))[0]];
-            const int128 volume = volume6_of(at_[c[0]], at_[c[1]], at_[c[2]], origin);
+        each_first([&](uint32_t f, Component& component) {
+            const Corners c = edges_.corners(f), origin = edges_.corners(connected_.find(f));
+            const int128 volume = volume6_of(at_[c[0]], at_[c[1]], at_[c[2]], at_[origin[0]]);
+            component.authored += surplus_[f] * volume;
             volumes_[cells_.find(back(f))] += volume;
             volumes_[cells_.find(front(f))] -= volume;
         });
@@ -211,8 +212,10 @@ private:
                 return;
             (outside_in_front == (surplus_[f] > 0) ? component.in_front_of_it : component.behind_it) = true;
         });
-        for (Component& component : components_)
-            component.contradicts = component.is_balanced && component.in_front_of_it && component.behind_it;
+        // Where all parts face outwards, the file says no less volume than the cells of the inside have.
+        for (Component& c : components_)
+            c.contradicts =
+                c.is_balanced && c.in_front_of_it && c.behind_it && c.authored < -c.least - (-c.least >> 20);
         if (std::any_of(components_.begin(), components_.end(), [](const Component& c) { return c.contradicts; }))
             deny_contradictions();
         for (Component& component : components_)
@@ -225,8 +228,8 @@ private:
             edges_, at_, [this](auto&& visit) { each_edge(visit); },
             [this](auto&& visit) { each_first([&](uint32_t f, Component&) { visit(f); }); });
         each_first([&](uint32_t f, Component& component) {
-            const bool in_front = is_inside(front(f), component), behind = is_inside(back(f), component);
-            component.contradicts &= in_front == behind || patches.facing_of(f) * (behind - in_front) >= 0;
+            const int side = is_inside(back(f), component) - is_inside(front(f), component);
+            component.contradicts &= patches.facing_of(f) * side >= 0;
         });
     }
 

@@ -185,9 +185,7 @@ std::optional<MeshEdges> cut_edges(const MeshEdges& edges, const std::vector<Ver
     MeshEdges most(edges, more);
     if (is_balanced(most))
         return std::optional<MeshEdges>(std::move(most));
-    if (is_balanced(edges))
-        return std::nullopt;
-    return std::optional<MeshEdges>(is_balanced(some) ? std::move(some) : std::move(most));
+    return is_balanced(edges) ? std::nullopt : std::optional<MeshEdges>(std::move(some));
 }
 
 } // namespace voxrt::voxelize
