@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -17,14 +18,11 @@ if TYPE_CHECKING:
     from voxrt.voxelize.object_proxies import Geometry
     from voxrt.voxelize.scene import Scene, SceneObject
 
-_NEARLY_ALL = 0.99
-_NARROW = 1 / 8
-"""A wider bulk keeps enough voxels."""
+_BULKS = ((0.99, 1 / 8), (0.9, 1 / 64))
+"""The least share of the surface, and how wide a box holds it at most, of the scene's width. Wider ones keep enough
+voxels. Of a few triangles a stray one may be a larger share."""
 
 _BINS = 64
-_BULK_BINS = int(_BINS * _NARROW / 2) + 1
-_LEAST_BETWEEN = 2 * _NEARLY_ALL - 1.001
-"""The share of the surface between the quantiles of both ends is larger, whatever is rounded."""
 
 _ENOUGH = 100_000
 """Triangles that tell whether a scene is wide, as nearly all are."""
@@ -53,8 +51,8 @@ class StrayParts:
 def find_stray_parts(scene: Scene, geometry: Geometry) -> StrayParts | None:
     """Find what lies outside a box that is an eighth as wide as the scene and holds 99 % of its surface.
 
-    None where no such box is found: it is sought between quantiles of the triangles' middles. Objects that colliders
-    stand for are not looked at; nor is a scene that has some.
+    Or outside one that is 1/64 as wide and holds 90 %. None where no such box is found: it is sought between quantiles
+    of the triangles' middles. Objects that colliders stand for are not looked at; nor is a scene that has some.
 
     >>> from voxrt.voxelize import EMPTY, Material, Mesh, Scene, SceneObject
     >>> corners = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [900, 0, 0], [900, 1, 0], [900, 0, 0.1]])
@@ -72,10 +70,18 @@ def find_stray_parts(scene: Scene, geometry: Geometry) -> StrayParts | None:
         return None
     step = max(1, count // _ENOUGH)
     width = _width(groups)
-    ends = _bulk_ends(np.concatenate([one.corners(one.some(step)) for one in groups], axis=2), width)
-    if ends is None or (ends[1] - ends[0]).max() >= width * _NARROW:
-        return None
-    return _strays(shown, groups, *ends)
+    corners = np.concatenate([one.corners(one.some(step)) for one in groups], axis=2)
+    for share, narrow in _BULKS:
+        ends = _bulk_ends(corners, width, share, narrow)
+        if ends is not None and (ends[1] - ends[0]).max() < width * narrow:
+            found = _strays(shown, groups, *ends)
+            if found is not None and found.share >= share and _width_of(found) < found.width * narrow:
+                return found
+    return None
+
+
+def _width_of(found: StrayParts) -> float:
+    return max(high - low for low, high in zip(found.low, found.high, strict=True))
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -156,8 +162,10 @@ def _areas(corners: NDArray[np.float64]) -> NDArray[np.float64]:
         return np.asarray(np.sqrt(sum(squares)) / 2)
 
 
-def _bulk_ends(corners: NDArray[np.float64], width: float) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
-    """Return the ends of where the middles of nearly all of the surface are, with some room.
+def _bulk_ends(
+    corners: NDArray[np.float64], width: float, share: float, narrow: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+    """Return the ends of where the middles of a share of the surface are, with some room.
 
     None for no surface, and where they are certainly too wide for a scene of this width.
     """
@@ -165,11 +173,11 @@ def _bulk_ends(corners: NDArray[np.float64], width: float) -> tuple[NDArray[np.f
     if not 0 < area.sum() < np.inf:
         return None
     middles = corners.mean(axis=0)
-    if not all(_may_be_narrow(axis, area, width) for axis in middles):
+    if not all(_may_be_narrow(axis, area, width, share, narrow) for axis in middles):
         return None
     order = np.argsort(middles, axis=1, kind="stable")
     sums = np.cumsum(area[order], axis=1) / area.sum()
-    tail = 1 - _NEARLY_ALL
+    tail = 1 - share
     first, last = (sums <= tail).sum(axis=1), np.minimum((sums < 1 - tail).sum(axis=1), len(area) - 1)
     axes = np.arange(3)
     low, high = middles[axes, order[axes, first]], middles[axes, order[axes, last]]
@@ -177,14 +185,18 @@ def _bulk_ends(corners: NDArray[np.float64], width: float) -> tuple[NDArray[np.f
     return low - room, high + room
 
 
-def _may_be_narrow(middles: NDArray[np.float64], area: NDArray[np.float64], width: float) -> bool:
+def _may_be_narrow(
+    middles: NDArray[np.float64], area: NDArray[np.float64], width: float, share: float, narrow: float
+) -> bool:
     """Tell whether _bulk_ends may find a narrow bulk on this axis: without its room, half as wide as is narrow.
 
-    The area is added up in bins. Such a bulk meets at most _BULK_BINS of them. This is faster than sorting.
+    The area is added up in bins, of which such a bulk meets few. This is faster than sorting. The share of the surface
+    between the quantiles of both ends is larger than the least, whatever is rounded.
     """
+    most, least = math.ceil(_BINS * narrow / 2) + 1, 2 * share - 1.001
     bins = ((middles - middles.min()) * (_BINS / width)).astype(np.int64)
-    sums = np.append(0.0, np.cumsum(np.bincount(bins, area, _BINS + _BULK_BINS)))
-    return bool((sums[_BULK_BINS:] - sums[:-_BULK_BINS]).max() >= _LEAST_BETWEEN * sums[-1])
+    sums = np.append(0.0, np.cumsum(np.bincount(bins, area, _BINS + most)))
+    return bool((sums[most:] - sums[:-most]).max() >= least * sums[-1])
 
 
 def _strays(
@@ -209,7 +221,7 @@ def _strays(
                     farthest, place = float(away.max()), points[np.argmax(away)]
     width = float((whole.high - whole.low).max())
     share = bulk.area / whole.area if 0 < whole.area < np.inf else 0.0
-    if share < _NEARLY_ALL or not outside.any() or (bulk.high - bulk.low).max() >= width * _NARROW:
+    if share == 0 or not outside.any():
         return None
     names, alone = (tuple(shown[i].name for i in np.flatnonzero(which)) for which in (outside, outside & ~inside))
     return StrayParts(_triple(bulk.low), _triple(bulk.high), share, width, names, alone, _triple(place))

@@ -32,6 +32,13 @@ def test_a_stray_triangle_is_found_in_the_object_and_beside_it():
         assert found.share == pytest.approx(6 * 256 / (6 * 256 + 0.5))
 
 
+def test_a_stray_triangle_as_large_as_a_side_is_found():
+    chip = Mesh([[9000, 0, 0], [9016, 0, 0], [9000, 16, 0]], [[0, 1, 2]], [1])
+    found = find_stray_parts(scene_with(SceneObject("scan", joined(BOX, chip))), "auto")
+    assert (found.low, found.high, found.place[0]) == ((0, 0, 0), (16, 16, 16), 9016)
+    assert found.share == pytest.approx(12 / 13)
+
+
 @pytest.mark.parametrize("subdivisions", [3, 7])  # fewer triangles than are looked at first, and more
 def test_copies_are_looked_at_where_they_stand(subdivisions):
     ball = icosphere(subdivisions, (0, 0, 0), 8)

@@ -218,3 +218,11 @@ def test_what_is_not_as_it_should_be_is_refused_in_one_line(pattern, text, messa
     with pytest.raises(AssetError, match=message) as caught:
         read(tmp_path, re.sub(pattern, text, whole, count=1))
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("meter", ["0", "0,0254", "1e300"])
+def test_a_unit_that_is_no_length_is_refused(meter, tmp_path):
+    whole = document(polygons(SIDES, "a"), {"a": RED})
+    asset = f'<asset><unit meter="{meter}"/></asset>'
+    with pytest.raises(AssetError, match=f"has a unit of '{meter}' metres"):
+        read(tmp_path, re.sub("(<COLLADA[^>]*>)(<asset>.*</asset>|<asset/>)?", rf"\1{asset}", whole, count=1))

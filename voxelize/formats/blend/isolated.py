@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.opacity import OPAQUE_FROM
 from voxrt.voxelize.formats.reader_process.limits import Limits, Request
-from voxrt.voxelize.formats.reader_process.parent import Reader, read_apart, reader_module
+from voxrt.voxelize.formats.reader_process.parent import Reader, read_apart, reader_module, refuse_unopenable
 
 if TYPE_CHECKING:
     from voxrt.voxelize.scene import Scene
@@ -71,6 +71,7 @@ def read_isolated(
     if limits is None:
         own = Limits.of_this_machine()
         limits = replace(own, memory=min(own.memory + _BPY_MEMORY, own.most_memory))
+    refuse_unopenable("Blender", path)
     command, output = _command(path)
     request = Request(limits=limits, output=output, time=time, allow_outside=allow_outside, opaque_from=opaque_from)
     reader = Reader(

@@ -60,9 +60,11 @@ def load_dae(path: str | Path, *, allow_outside: bool = False, opaque_from: floa
 
 def _metres(path: Path, text: str) -> float:
     try:
-        return float(text)
+        unit = float(text)
+        scene_transform("y", unit)
     except ValueError:
         raise AssetError(path, f"has a unit of {text[:24]!r} metres", fix=DAMAGED) from None
+    return unit
 
 
 def _scene(path: Path, data: bytes, frame: NDArray[np.float64], *, allow_outside: bool, opaque_from: float) -> Scene:

@@ -11,7 +11,7 @@ import msgspec
 
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.authored_properties import explain
-from voxrt.voxelize.formats.external_files import ALLOW_OUTSIDE, ExternalFiles
+from voxrt.voxelize.formats.external_files import ALLOW_OUTSIDE, ExternalFiles, refuse_pointer
 from voxrt.voxelize.formats.gltf.container import read_container
 from voxrt.voxelize.formats.gltf.extensions import MESHOPT
 from voxrt.voxelize.formats.gltf.meshopt import CompressedView, decode
@@ -127,6 +127,7 @@ class Document:
             if found is None:
                 problem = f"no file {buffer.uri[:60]!r} in the asset's folder"
                 raise self.error(f"{here}.uri", problem, "put it there, or embed it in a .glb")
+            refuse_pointer(self.path, found, f"{here}.uri")
             data = memoryview(found)
         elif index == 0 and self._binary is not None:
             data = self._binary

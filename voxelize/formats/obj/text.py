@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import codecs
 import math
 import re
 import warnings
@@ -13,6 +12,7 @@ import numpy as np
 
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.external_files import read_asset
+from voxrt.voxelize.formats.text_encoding import ascii_compatible
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -25,14 +25,6 @@ _Number = TypeVar("_Number", np.float64, np.int64)
 _INDEX = re.compile(rb"[+-]?\d{1,18}")
 
 _MOST_MARKS = 3  # in a name that a comment may follow
-
-_BOMS = (
-    (codecs.BOM_UTF8, "utf-8"),
-    (codecs.BOM_UTF32_LE, "utf-32-le"),  # before UTF-16, whose mark it begins with
-    (codecs.BOM_UTF32_BE, "utf-32-be"),
-    (codecs.BOM_UTF16_LE, "utf-16-le"),
-    (codecs.BOM_UTF16_BE, "utf-16-be"),
-)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -100,7 +92,7 @@ def decode(raw: bytes) -> str:
 def read_text(path: Path) -> Text:
     """Read a text file of any usual encoding; raise AssetError where its bytes contradict its byte order mark."""
     data = read_asset(path)
-    return as_text(path, _to_ascii_compatible(path, data))
+    return as_text(path, ascii_compatible(path, data))
 
 
 def as_text(path: Path, data: bytes) -> Text:
@@ -126,21 +118,6 @@ def as_text(path: Path, data: bytes) -> Text:
         solid = np.append(np.flatnonzero(buffer > ord(" ")), len(buffer))
         starts[indented] = np.minimum(solid[np.searchsorted(solid, starts[indented])], ends[indented])
     return Text(path, data, buffer, starts, ends, newlines)
-
-
-def _to_ascii_compatible(path: Path, data: bytes) -> bytes:
-    encoding = next((name for mark, name in _BOMS if data.startswith(mark)), None)
-    if encoding is None and len(data) >= 4 and 0 in data[:4]:
-        # No mark, but one byte in two is zero: UTF-16 of ASCII text.
-        encoding = "utf-16-be" if data[0] == 0 and data[1] else "utf-16-le" if data[1] == 0 and data[0] else None
-    if encoding is None or encoding == "utf-8":
-        return data.removeprefix(codecs.BOM_UTF8)
-    try:
-        return data.decode(encoding).lstrip("\ufeff").encode("utf-8")
-    except UnicodeDecodeError:
-        raise AssetError(
-            path, f"is not the {encoding.upper()} text that it begins as", fix="save it as UTF-8"
-        ) from None
 
 
 def real_rows(text: Text, lines: NDArray[np.int64], keyword: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:

@@ -69,7 +69,7 @@ def reader_module(name: str) -> tuple[str, ...]:
 def read_apart(reader: Reader, path: Path, request: Request) -> Scene:
     """Read a file in a process of its own. AssetError or DoesNotFitError where there is no scene."""
     limits = request.limits
-    _refuse_unopenable(reader, path)
+    refuse_unopenable(reader.library, path)
     kept = {name: value for name, value in os.environ.items() if name not in reader.removed}
     # Libraries leave notes about their crashes in the temporary folder: it gets one that is removed.
     with tempfile.TemporaryDirectory(prefix="voxrt-") as folder, tempfile.TemporaryFile() as printed:
@@ -99,11 +99,12 @@ def read_apart(reader: Reader, path: Path, request: Request) -> Scene:
     raise _error(path, found, limits)
 
 
-def _refuse_unopenable(reader: Reader, path: Path) -> None:
+def refuse_unopenable(library: str, path: Path) -> None:
+    """Raise AssetError for a file that cannot be read, and for one that stands for another."""
     try:
         str(path).encode()
     except UnicodeEncodeError:
-        problem = f"its path is not UTF-8, and {reader.library} opens no such file"
+        problem = f"its path is not UTF-8, and {library} opens no such file"
         raise AssetError(path, problem, fix="rename it") from None
     try:
         with path.open("rb") as file:

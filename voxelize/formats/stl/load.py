@@ -17,6 +17,7 @@ from voxrt.voxelize.formats.material_table import MaterialTable
 from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
 from voxrt.voxelize.formats.scene_frame import FARTHEST, in_range, scene_transform
 from voxrt.voxelize.formats.stl.text import ascii_solids
+from voxrt.voxelize.formats.text_encoding import ascii_compatible, is_marked_wide
 from voxrt.voxelize.scene import Scene, SceneObject
 from voxrt.voxelize.warning_log import WarningLog
 
@@ -50,6 +51,8 @@ def load_stl(path: str | Path, *, up: str | None = None, unit: float | None = No
     data = read_asset(path)
     log = WarningLog()
     facet_colours = None
+    if is_marked_wide(data) and not _has_binary_length(data):
+        data = ascii_compatible(path, data)
     if _is_binary(data):
         corners, facet_colours = _binary(path, data, log)
         solids = [(asset_name(path), corners)]
@@ -88,10 +91,14 @@ def _is_binary(data: bytes) -> bool:
     The word ``solid`` alone is no sign of an ASCII file: many exporters begin binary files with it. Lines before it are
     comments of some writers.
     """
-    if len(data) >= _HEADER and len(data) == _HEADER + 50 * int.from_bytes(data[80:84], "little"):
+    if _has_binary_length(data):
         return True
     head = data[:1024]
     return b"\0" in head or re.search(rb"^(\xef\xbb\xbf)?[ \t]*solid", head, re.IGNORECASE | re.MULTILINE) is None
+
+
+def _has_binary_length(data: bytes) -> bool:
+    return len(data) >= _HEADER and len(data) == _HEADER + 50 * int.from_bytes(data[80:84], "little")
 
 
 def _binary(

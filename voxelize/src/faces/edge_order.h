@@ -3,28 +3,9 @@
 
 #include "exact_predicates.h"
 #include "mesh_edges.h"
-
-#include <compare>
+#include "sheets.h"
 
 namespace voxrt::voxelize {
-
-/// The signs of the normal of triangle uvw. Normals of parallel planes are equal or opposite as these are.
-inline std::array<int, 3> normal_signs(const Vertex& u, const Vertex& v, const Vertex& w) {
-    const auto part = [&](int32_t Vertex::* i, int32_t Vertex::* j) {
-        return sign_of((int128(v.*i) - u.*i) * (int128(w.*j) - u.*j) - (int128(v.*j) - u.*j) * (int128(w.*i) - u.*i));
-    };
-    return {part(&Vertex::y, &Vertex::z), part(&Vertex::z, &Vertex::x), part(&Vertex::x, &Vertex::y)};
-}
-
-/// Whether a normal points up: of a normal and its opposite, one does.
-inline bool points_up(const std::array<int, 3>& normal) { return normal > std::array<int, 3>{0, 0, 0}; }
-
-/// The place of a face in a stack of coplanar faces, from below.
-struct StackRank {
-    bool faces_up;  // so that faces that point away from the stack are its ends
-    uint32_t sheet; // the connected coplanar faces to which it belongs, as a number
-    auto operator<=>(const StackRank&) const = default;
-};
 
 /// Orders the faces at an edge counter-clockwise, seen against its direction from `low` to high. The first one has an
 /// area; faces without area follow it. rank_of(face) orders faces that lie upon one another. n log n.

@@ -4,8 +4,8 @@
 #include "closed_surface.h"
 #include "edge_order.h"
 #include "exact_predicates.h"
-
-#include <bit>
+#include "patches.h"
+#include "sheets.h"
 
 namespace voxrt::voxelize {
 namespace {
@@ -53,10 +53,12 @@ struct Component {
     bool is_doubted = false;       // it may have two sides that are one
     bool in_front_of_it = false;   // faces that have the outside in front of them, as authored
     bool behind_it = false;        // and behind
+    bool contradicts = false;      // it has both, though it is balanced
     bool is_two_sided = false;     // a face that is there once for each side parts inside from outside
     bool is_paired = true;         // each face is there as often for each side, and its pieces have two sides
     uint32_t outside = UINT32_MAX; // a cell
     int128 least = 0;              // its volume
+    int128 authored = 0;           // the signed volume that the file says
     int64_t kept = 0, turned = 0;  // faces that part inside from outside: as authored, the other way around
     double enclosing_area = 0, loose_area = 0;
     bool is_settled() const { return outside != UINT32_MAX && kept + turned > 0 && (!is_balanced || is_two_sided); }
@@ -79,10 +81,10 @@ public:
     std::shared_ptr<const Orientation> orient() {
         find_components();
         find_repeated();
-        find_sheets();
         join_sides();
         find_outsides();
         find_contradictions();
+        find_voids();
         find_two_sided();
         tell_inside();
         auto found = std::make_shared<Orientation>();
@@ -147,25 +149,6 @@ private:
         });
     }
 
-    /// Joins coplanar faces that meet in pairs. Their lowest one tells which way they face.
-    void find_sheets() {
-        sheets_ = DisjointSets(count_);
-        edges_.each([&](uint32_t low, Uses uses) {
-            if (!is_ours(uses[0].face))
-                return;
-            const std::vector<EdgeUse>& pair = once_of(uses);
-            if (pair.size() == 2 &&
-                volume6_of(at_[uses[0].high], at_[pair[0].opposite], at_[pair[1].opposite], at_[low]) == 0)
-                sheets_.merge(pair[0].face, pair[1].face);
-        });
-    }
-
-    StackRank rank_of(uint32_t face) {
-        const uint32_t sheet = sheets_.find(face);
-        const Corners c = edges_.corners(sheet);
-        return {points_up(normal_signs(at_[c[0]], at_[c[1]], at_[c[2]])), sheet};
-    }
-
     /// The faces at an edge without repeated ones.
     const std::vector<EdgeUse>& once_of(Uses uses) {
         once_.clear();
@@ -175,16 +158,22 @@ private:
         return once_;
     }
 
+    /// Calls visit(low, uses) for the edges of our components, without repeated faces.
+    template <class Visit> void each_edge(Visit&& visit) {
+        edges_.each([&](uint32_t low, Uses uses) {
+            if (is_ours(uses[0].face))
+                visit(low, once_of(uses));
+        });
+    }
+
     /// Joins the sides of faces around edges: around edges of two faces to the sides of pieces, around all to cells.
     void join_sides() {
         pieces_ = DisjointSets(2 * size_t(count_));
         cells_ = DisjointSets(2 * size_t(count_));
-        edges_.each([&](uint32_t low, Uses uses) {
-            if (!is_ours(uses[0].face))
-                return;
-            std::vector<EdgeUse> once = once_of(uses);
+        Sheets sheets(edges_, at_, [this](auto&& visit) { each_edge(visit); });
+        each_edge([&](uint32_t low, std::vector<EdgeUse> once) {
             if (once.size() > 2)
-                sort_about_edge(low, once, at_, [this](uint32_t face) { return rank_of(face); });
+                sort_about_edge(low, once, at_, [&](uint32_t face) { return sheets.rank_of(face); });
             for (size_t i = 0; i < once.size(); ++i) {
                 const EdgeUse& next = once[(i + 1) % once.size()];
                 cells_.merge(last_side(once[i]), first_side(next));
@@ -197,10 +186,10 @@ private:
     /// Finds the cell of least volume in each component.
     void find_outsides() {
         volumes_.assign(2 * size_t(count_), 0);
-        each_first([&](uint32_t f, Component&) {
-            const Corners c = edges_.corners(f);
-            const Vertex& origin = at_[edges_.corners(connected_.find(f))[0]];
-            const int128 volume = volume6_of(at_[c[0]], at_[c[1]], at_[c[2]], origin);
+        each_first([&](uint32_t f, Component& component) {
+            const Corners c = edges_.corners(f), origin = edges_.corners(connected_.find(f));
+            const int128 volume = volume6_of(at_[c[0]], at_[c[1]], at_[c[2]], at_[origin[0]]);
+            component.authored += surplus_[f] * volume;
             volumes_[cells_.find(back(f))] += volume;
             volumes_[cells_.find(front(f))] -= volume;
         });
@@ -216,14 +205,60 @@ private:
     /// Finds balanced components of which some faces have the outside in front of them, and others have it behind:
     /// parts that meet at edges, of which some are inside out.
     void find_contradictions() {
+        is_void_.assign(2 * size_t(count_), false);
         each_first([&](uint32_t f, Component& component) {
             const bool outside_in_front = !is_inside(front(f), component);
             if (surplus_[f] == 0 || outside_in_front != is_inside(back(f), component))
                 return;
             (outside_in_front == (surplus_[f] > 0) ? component.in_front_of_it : component.behind_it) = true;
         });
+        // Where all parts face outwards, the file says no less volume than the cells of the inside have.
+        for (Component& c : components_)
+            c.contradicts =
+                c.is_balanced && c.in_front_of_it && c.behind_it && c.authored < -c.least - (-c.least >> 20);
+        if (std::any_of(components_.begin(), components_.end(), [](const Component& c) { return c.contradicts; }))
+            deny_contradictions();
         for (Component& component : components_)
-            component.is_balanced &= !(component.in_front_of_it && component.behind_it);
+            component.is_balanced &= !component.contradicts;
+    }
+
+    /// Rounding may put faces at an edge in a wrong order, which a patch that faces outwards shows.
+    void deny_contradictions() {
+        Patches patches(
+            edges_, at_, [this](auto&& visit) { each_edge(visit); },
+            [this](auto&& visit) { each_first([&](uint32_t f, Component&) { visit(f); }); });
+        each_first([&](uint32_t f, Component& component) {
+            const int side = is_inside(back(f), component) - is_inside(front(f), component);
+            component.contradicts &= patches.facing_of(f) * side >= 0;
+        });
+    }
+
+    /// Finds cells that such parts enclose together and that are in none of them: an even number of faces is between
+    /// one and the outside, on any way, and most of its faces have it in front of them.
+    void find_voids() {
+        if (std::none_of(components_.begin(), components_.end(), [](const Component& c) { return c.contradicts; }))
+            return;
+        DisjointSets parities(4 * size_t(count_)); // of cells: the cell, the opposite
+        std::vector<double> faced(2 * size_t(count_), 0);
+        each_first([&](uint32_t f, Component& component) {
+            if (!component.contradicts)
+                return;
+            const uint32_t ahead = cells_.find(front(f)), behind = cells_.find(back(f));
+            const uint32_t odd = uint32_t(surplus_[f]) & 1;
+            parities.merge(2 * ahead, 2 * behind + odd);
+            parities.merge(2 * ahead + 1, 2 * behind + 1 - odd);
+            const double area = surplus_[f] * area_of(f);
+            faced[ahead] += area;
+            faced[behind] -= area;
+        });
+        each_first([&](uint32_t f, Component& component) {
+            if (!component.contradicts)
+                return;
+            for (const uint32_t cell : {cells_.find(front(f)), cells_.find(back(f))})
+                is_void_[cell] = cell != component.outside && volumes_[cell] > 0 && faced[cell] > 0 &&
+                                 parities.find(2 * cell) == parities.find(2 * component.outside) &&
+                                 parities.find(2 * cell) != parities.find(2 * cell + 1);
+        });
     }
 
     /// Finds components that are there once for each side as a whole; and those whose outside and inside are parted by
@@ -253,8 +288,7 @@ private:
     /// Counts the faces that part inside from outside, and the areas of those that touch the inside or do not.
     void tell_inside() {
         each_first([&](uint32_t f, Component& component) {
-            const Corners c = edges_.corners(f);
-            const double area = area_of(at_[c[0]], at_[c[1]], at_[c[2]]);
+            const double area = area_of(f);
             const bool in_front = is_inside(front(f), component), behind = is_inside(back(f), component);
             (in_front || behind ? component.enclosing_area : component.loose_area) += area;
             component.kept += behind && !in_front;
@@ -311,7 +345,10 @@ private:
             found.faces[f] = Orientation::kReversed;
     }
 
-    bool is_inside(uint32_t side, const Component& component) { return cells_.find(side) != component.outside; }
+    bool is_inside(uint32_t side, const Component& component) {
+        const uint32_t cell = cells_.find(side);
+        return cell != component.outside && !is_void_[cell];
+    }
 
     /// Calls visit(face, component) for the faces of our components, those with edges, each once.
     template <class Visit> void each_first(Visit&& visit) {
@@ -322,7 +359,10 @@ private:
             }
     }
 
-    static double area_of(const Vertex& a, const Vertex& b, const Vertex& c) {
+    /// Twice the area of a face.
+    double area_of(uint32_t face) const {
+        const Corners corners = edges_.corners(face);
+        const Vertex &a = at_[corners[0]], &b = at_[corners[1]], &c = at_[corners[2]];
         const double ux = double(b.x) - a.x, uy = double(b.y) - a.y, uz = double(b.z) - a.z;
         const double vx = double(c.x) - a.x, vy = double(c.y) - a.y, vz = double(c.z) - a.z;
         return std::hypot(uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx);
@@ -339,8 +379,9 @@ private:
     std::vector<bool> opposed_;
     std::vector<EdgeUse> sorted_;
     std::vector<int> surplus_; // of a face and those equal to it: how many more face as it does
-    DisjointSets sheets_{0}, pieces_{0}, cells_{0};
+    DisjointSets pieces_{0}, cells_{0};
     std::vector<int128> volumes_; // of cells, by side
+    std::vector<bool> is_void_;   // likewise
     std::vector<EdgeUse> once_;
 };
 
@@ -355,30 +396,6 @@ std::shared_ptr<const Orientation> find_orientation(const MeshEdges& whole, cons
         each_repeated(uses, sorted, [&](const EdgeUse&, const EdgeUse&) { consistent = false; });
     });
     return consistent ? nullptr : Faces(whole, edges, vertices, flat).orient();
-}
-
-bool has_repeated_faces(const MeshView& mesh, const std::vector<uint64_t>& vertex_keys) {
-    constexpr size_t kBatch = 64; // places are fetched ahead, since each is somewhere else in memory
-    std::vector<uint32_t> seen(std::bit_ceil(mesh.triangle_count() * 4 / 3 + 1), 0); // by hash, then the next place
-    uint64_t hashes[kBatch];
-    for (size_t from = 0; from < mesh.triangle_count(); from += kBatch) {
-        const size_t count = std::min(kBatch, mesh.triangle_count() - from);
-        count_work(uint32_t(count));
-        for (size_t i = 0; i < count; ++i) {
-            const int32_t* corner = mesh.triangles.data() + 3 * (from + i);
-            hashes[i] = mix_bits(vertex_keys[corner[0]] + vertex_keys[corner[1]] + vertex_keys[corner[2]]);
-            __builtin_prefetch(&seen[hashes[i] & (seen.size() - 1)], 1);
-        }
-        for (size_t i = 0; i < count; ++i) {
-            const uint32_t print = uint32_t(hashes[i] >> 32) | 1;
-            size_t place = hashes[i] & (seen.size() - 1);
-            for (; seen[place] != 0; place = (place + 1) & (seen.size() - 1))
-                if (seen[place] == print)
-                    return true;
-            seen[place] = print;
-        }
-    }
-    return false;
 }
 
 } // namespace voxrt::voxelize

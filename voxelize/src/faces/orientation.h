@@ -52,8 +52,4 @@ struct Orientation {
 std::shared_ptr<const Orientation> find_orientation(const MeshEdges& whole, const MeshEdges& edges,
                                                     const std::vector<Vertex>& vertices, bool flat);
 
-/// Whether some triangle is there twice, either way around; vertices at one position count as one. Compares 31 bits of
-/// a hash, so about one triangle of 10^9 is mistaken for another. About 10 ns per triangle.
-bool has_repeated_faces(const MeshView& mesh, const std::vector<uint64_t>& vertex_keys);
-
 } // namespace voxrt::voxelize

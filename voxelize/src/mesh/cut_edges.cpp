@@ -9,6 +9,7 @@ namespace voxrt::voxelize {
 namespace {
 
 constexpr double kRounding = 2;                     // units of the lattice
+constexpr double kExactly = 0.01;                   // likewise: rounding in here alone
 constexpr double kRoundingOfFile = 1.0 / (1 << 23); // of the size of the mesh, where a file has float32
 
 constexpr size_t kMostFaces = 64; // at an edge
@@ -81,53 +82,110 @@ bool is_unpaired(uint32_t low, std::span<const EdgeUse> uses, const std::vector<
     return surplus != 0;
 }
 
+/// Some vertices, to be found on edges.
+class VerticesOnEdges {
+public:
+    /// `room`: how far from a line a vertex may lie that is on it.
+    VerticesOnEdges(const std::vector<Vertex>& vertices, const std::vector<bool>& chosen, double room)
+        : vertices_(vertices), room_(room), bvh_(boxes_of(vertices, chosen)) {}
+
+    /// Those between the ends of an edge, from `low` to `high`.
+    std::vector<uint32_t> on(uint32_t low, uint32_t high) {
+        const Segment segment(vertices_[low], vertices_[high], room_);
+        found_.clear();
+        bvh_.find_where([&](const TriangleBox& box) { return segment.meets(box); },
+                        [&](uint32_t v) {
+                            if (const double place = segment.place_of(vertices_[v]); place > 0)
+                                found_.push_back({place, v});
+                        });
+        std::sort(found_.begin(), found_.end());
+        std::vector<uint32_t> on_edge;
+        for (const auto& [place, v] : found_)
+            on_edge.push_back(v);
+        return on_edge;
+    }
+
+private:
+    static std::vector<std::pair<TriangleBox, uint32_t>> boxes_of(const std::vector<Vertex>& vertices,
+                                                                  const std::vector<bool>& chosen) {
+        std::vector<std::pair<TriangleBox, uint32_t>> boxes;
+        for (uint32_t v = 0; v < vertices.size(); ++v)
+            if (chosen[v]) {
+                TriangleBox box;
+                box.add(vertices[v]);
+                boxes.push_back({box, v});
+            }
+        return boxes;
+    }
+
+    const std::vector<Vertex>& vertices_;
+    double room_;
+    TriangleBvh bvh_;
+    std::vector<std::pair<double, uint32_t>> found_;
+};
+
+void add_cut(std::vector<EdgeCut>& cuts, uint32_t low, std::span<const EdgeUse> uses, std::vector<uint32_t> at) {
+    if (!at.empty())
+        cuts.push_back({low, uses[0].high, std::move(at)});
+}
+
+/// Whether each edge is walked as often one way as the other, edges of one face left out.
+bool is_balanced(const MeshEdges& edges) {
+    bool balanced = true;
+    edges.each([&](uint32_t, std::span<const EdgeUse> uses) {
+        int sum = 0;
+        for (const EdgeUse& use : uses)
+            sum += use.is_upwards ? 1 : -1;
+        balanced = balanced && (sum == 0 || uses.size() == 1);
+    });
+    return balanced;
+}
+
 } // namespace
 
 std::optional<MeshEdges> cut_edges(const MeshEdges& edges, const std::vector<Vertex>& vertices) {
-    std::vector<bool> is_end(vertices.size(), false);
+    std::vector<bool> is_end(vertices.size(), false), is_used(vertices.size(), false);
     TriangleBox whole;
     edges.each([&](uint32_t low, std::span<const EdgeUse> uses) {
-        whole.add(vertices[low]);
-        whole.add(vertices[uses[0].high]);
+        for (const uint32_t v : {low, uses[0].high}) {
+            whole.add(vertices[v]);
+            is_used[v] = true;
+        }
         if (is_unpaired(low, uses, vertices))
             is_end[low] = is_end[uses[0].high] = true;
     });
-    std::vector<std::pair<TriangleBox, uint32_t>> ends;
-    for (uint32_t v = 0; v < vertices.size(); ++v)
-        if (is_end[v]) {
-            TriangleBox box;
-            box.add(vertices[v]);
-            ends.push_back({box, v});
-        }
-    if (ends.empty())
-        return std::nullopt;
     double size = 0;
     for (int i = 0; i < 3; ++i)
         size = std::max(size, double(whole.high[i]) - whole.low[i]);
-    const TriangleBvh bvh(std::move(ends));
+    const double room = kRounding + size * kRoundingOfFile;
+    VerticesOnEdges ends(vertices, is_end, room);
     std::vector<EdgeCut> cuts;
-    std::vector<std::pair<double, uint32_t>> on_edge;
     edges.each([&](uint32_t low, std::span<const EdgeUse> uses) {
-        if (!is_unpaired(low, uses, vertices))
-            return;
-        const uint32_t high = uses[0].high;
-        const Segment segment(vertices[low], vertices[high], kRounding + size * kRoundingOfFile);
-        on_edge.clear();
-        bvh.find_where([&](const TriangleBox& box) { return segment.meets(box); },
-                       [&](uint32_t v) {
-                           if (const double place = segment.place_of(vertices[v]); place > 0)
-                               on_edge.push_back({place, v});
-                       });
-        if (on_edge.empty())
-            return;
-        std::sort(on_edge.begin(), on_edge.end());
-        EdgeCut& cut = cuts.emplace_back(EdgeCut{low, high, {}});
-        for (const auto& [place, v] : on_edge)
-            cut.at.push_back(v);
+        if (is_unpaired(low, uses, vertices))
+            add_cut(cuts, low, uses, ends.on(low, uses[0].high));
     });
     if (cuts.empty())
         return std::nullopt;
-    return MeshEdges(edges, cuts);
+    MeshEdges some(edges, cuts);
+    // Where parts meet, faces of two may pair along a seam by chance.
+    VerticesOnEdges all(vertices, is_used, kExactly);
+    auto cut = cuts.begin();
+    std::vector<EdgeCut> more;
+    edges.each([&](uint32_t low, std::span<const EdgeUse> uses) {
+        std::vector<uint32_t> at = all.on(low, uses[0].high);
+        for (const EdgeUse& use : uses)
+            std::erase(at, use.opposite);
+        if (cut != cuts.end() && cut->low == low && cut->high == uses[0].high) {
+            if (cut->at.size() > at.size())
+                at = cut->at;
+            ++cut;
+        }
+        add_cut(more, low, uses, std::move(at));
+    });
+    MeshEdges most(edges, more);
+    if (is_balanced(most))
+        return std::optional<MeshEdges>(std::move(most));
+    return is_balanced(edges) ? std::nullopt : std::optional<MeshEdges>(std::move(some));
 }
 
 } // namespace voxrt::voxelize

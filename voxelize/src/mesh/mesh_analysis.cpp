@@ -1,6 +1,7 @@
 #include "mesh_analysis.h"
 
 #include "../faces/closed_surface.h"
+#include "../faces/manifold.h"
 #include "../work/interrupt.h"
 #include "cut_edges.h"
 
@@ -126,7 +127,7 @@ Enclosed find_enclosed(const MeshView& mesh, const TriangleSums& sums, double bo
     };
     const bool flat = found.closed && std::abs(sums.volume6) < 1e-6 * box;
     // Where it is not filled, an open surface decides nothing but the layers of faces between voxels.
-    if (found.closed ? flat || has_repeated_faces(mesh, keys) : fills(fill) || sums.odd_edges == 0)
+    if (found.closed ? flat || !is_manifold(mesh, keys) : fills(fill) || sums.odd_edges == 0)
         orient(flat);
     if (close_and_flip() && !edges) {
         orient(true);

@@ -25,6 +25,14 @@ def with_uri(folder, uri):
     return path, bytes(writer.data)
 
 
+def test_a_buffer_that_git_lfs_keeps_elsewhere_is_named(tmp_path):
+    path, data = with_uri(tmp_path, "data.bin")
+    path.write_text(path.read_text().replace(f'"byteLength": {len(data)}, "uri"', '"byteLength": 1000, "uri"'))
+    (tmp_path / "data.bin").write_text("version https://git-lfs.github.com/spec/v1\nsize 1\n")
+    with pytest.raises(AssetError, match=r"buffers\[0\]\.uri: is a Git LFS pointer.*; run: git lfs pull"):
+        load(path)
+
+
 @pytest.mark.parametrize("suffix", [".glb", ".gltf"])
 def test_a_glb_and_a_gltf_with_inline_data_are_the_same(suffix, tmp_path):
     (thing,) = load(triangle().save(tmp_path / f"a{suffix}")).objects

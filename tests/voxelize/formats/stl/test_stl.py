@@ -50,6 +50,12 @@ def test_text_before_the_first_solid(stl, before):
     assert [(one.name, len(one.mesh.triangles)) for one in scene.objects] == [("part", 1)]
 
 
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-32"])
+def test_text_with_a_mark_of_wide_characters(stl, encoding):
+    scene = stl(f"solid part\n{FACET}endsolid\n".encode(encoding))
+    assert [(one.name, len(one.mesh.triangles)) for one in scene.objects] == [("part", 1)]
+
+
 def test_ascii_solids_become_objects(stl):
     scene = stl(f"solid a b\n{FACET}endsolid\nSOLID\n{FACET.upper()}{FACET}ENDSOLID\nsolid a b\n{FACET}endsolid a b\n")
     assert [(one.name, len(one.mesh.triangles)) for one in scene.objects] == [("a b", 1), ("part", 2), ("a b (2)", 1)]
