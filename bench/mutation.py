@@ -76,6 +76,11 @@ REASONS = {
         "which of the lanes that want a bank goes first; the other asks again"
     ),
     "ray_setup rays/voxrt_ray_setup.sv:321 inv at B[0]": "whether a plane is ahead counts on dead axes alone",
+    "registers generated/voxrt_registers.sv:1785 const1 at Q[0]": (
+        "the material table answers as soon as any register: nothing overtakes it"
+    ),
+    "registers generated/voxrt_registers.sv:795 const0 at A[0]": "a pulse is 0 again before the next write",
+    "registers generated/voxrt_registers.sv:977 const0 at B[0]": "the flag of a bus, which this core does not have",
     "plane_time common/voxrt_plane_time.sv:68 inv at WR_EN[51]": "bit 56 of a time of 55 bits; unread",
     "brightness shading/voxrt_brightness.sv:149 inv at Y[2]": (
         "bit 2 of a product of 50 bits, which a brightness of 8 bits shows for few"
