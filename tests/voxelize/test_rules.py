@@ -38,12 +38,8 @@ def some_mesh(rng, side, material):
     return Mesh(mesh.positions, mesh.triangles, np.where(other, 10 * material, material).astype(np.uint8))
 
 
-@pytest.mark.parametrize("seed", range(14))
-def test_the_rule_is_that_of_brute_force(seed):
-    rng = np.random.default_rng(seed)
-    depth = int(rng.integers(2, 6))
-    grid = Grid(depth, (0.0, 0.0, 0.0), 1.0)
-    scene = scene_of(*(some_mesh(rng, grid.size, number + 1) for number in range(rng.integers(1, 4))))
+def assert_ruled(scene, grid):
+    """Compare with brute force, with thin parts and without."""
     meshes = [
         (snap(one.mesh.positions, one.transform, grid.origin, 1.0), one.mesh.triangles, one.mesh.materials)
         for one in scene.objects
@@ -55,6 +51,18 @@ def test_the_rule_is_that_of_brute_force(seed):
         np.testing.assert_array_equal(np.where(open_to_doubt, wanted, voxels), wanted)
         np.testing.assert_array_equal(voxels != 0, wanted != 0)
         assert sum(one.voxels for one in made.objects) == np.count_nonzero(voxels)
+
+
+@pytest.mark.parametrize("seed", range(14))
+def test_the_rule_is_that_of_brute_force(seed):
+    rng = np.random.default_rng(seed)
+    grid = Grid(int(rng.integers(2, 6)), (0.0, 0.0, 0.0), 1.0)
+    assert_ruled(scene_of(*(some_mesh(rng, grid.size, number + 1) for number in range(rng.integers(1, 4)))), grid)
+
+
+def test_hundreds_of_triangles_in_a_column():
+    bar = turned(box_mesh((0.2, 0.7, 0.7), (1.9, 1.4, 1.3), 2), np.random.default_rng(0))
+    assert_ruled(scene_of(icosphere(3, (1.1, 0.9, 1.0), 0.8, 1), bar), Grid(1, (0.0, 0.0, 0.0), 1.0))
 
 
 @pytest.mark.parametrize("stretched", [False, True])
