@@ -61,8 +61,16 @@ def test_the_rule_is_that_of_brute_force(seed):
 
 
 def test_hundreds_of_triangles_in_a_column():
-    bar = turned(box_mesh((0.2, 0.7, 0.7), (1.9, 1.4, 1.3), 2), np.random.default_rng(0))
-    assert_ruled(scene_of(icosphere(3, (1.1, 0.9, 1.0), 0.8, 1), bar), Grid(1, (0.0, 0.0, 0.0), 1.0))
+    """A ball shows, not the larger surface of the plates in it."""
+    plates = joined(*(box_mesh((0.6, 0.6, z), (1.4, 1.4, z + 0.01), 2) for z in np.linspace(0.7, 1.3, 9)))
+    scene = scene_of(turned(plates, np.random.default_rng(0)), icosphere(3, (1, 1, 1), 0.9, 1))
+    np.testing.assert_array_equal(dense(voxelize(scene, Grid(1, (0.0, 0.0, 0.0), 1.0), rule="centre").voxels), 1)
+
+
+def test_an_object_that_another_one_hides_does_not_show():
+    """It comes first, and is in all voxels of the other one's surface."""
+    hidden, shown = box_mesh((1.9, 1.9, 1.9), (2.1, 2.1, 2.1), 1), box_mesh((1.2, 1.2, 1.2), (2.8, 2.8, 2.8), 2)
+    assert_ruled(scene_of(hidden, shown), Grid(2, (0.0, 0.0, 0.0), 1.0))
 
 
 @pytest.mark.parametrize("stretched", [False, True])
