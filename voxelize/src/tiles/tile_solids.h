@@ -102,7 +102,11 @@ public:
     template <class Take> void for_each_around(int x, int y, double u, double v, Take take) {
         if (starts_.empty())
             index();
-        const Squares& squares = squares_in(size_t((y - y_) * kTileSide + x - x_));
+        constexpr uint32_t kFew = 32;
+        const auto column = size_t((y - y_) * kTileSide + x - x_);
+        if (starts_[column + 1] - starts_[column] <= kFew)
+            return for_each_at(x, y, take);
+        const Squares& squares = squares_in(column);
         const size_t at = squares.at(u - double(x * kUnit), v - double(y * kUnit));
         for (uint32_t i = squares.starts[at]; i < squares.starts[at + 1]; ++i)
             take(triangles_[squares.listed[i]]);
