@@ -135,6 +135,6 @@ def import_pyvista() -> ModuleType:
     try:
         return import_module("pyvista")  # it and VTK are large, and optional
     except ModuleNotFoundError as error:
-        raise ViewerError("showing octants needs PyVista, which is not installed; pip install pyvista") from error
+        raise ViewerError("this needs PyVista, which is not installed; pip install pyvista") from error
     except ImportError as error:
         raise ViewerError(f"PyVista cannot be loaded: {error}; on Debian apt install libgl1 libxrender1") from error

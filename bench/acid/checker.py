@@ -189,7 +189,7 @@ class Mesh:
     @cached_property
     def _columns(self) -> dict[tuple[int, int], list[Triangle]]:
         at = defaultdict(list)
-        for triangle in self.closing:
+        for triangle in (t for t in self.closing if any(normal_of(t))):
             ends = ((min(p[i] for p in triangle), max(p[i] for p in triangle)) for i in (0, 1))
             for column in product(*(range(low // UNIT, high // UNIT + 1) for low, high in ends)):
                 at[column].append(triangle)

@@ -130,6 +130,10 @@ def test_faces_without_an_area_add_nothing():
     assert checker.volume6(bow_tie) == sum(mesh.fractions(windings=True).values()) == 0
     assert sum(mesh.fractions().values()) == 8 * 4
     assert mesh.fractions()[2, 2, 0] == Fraction(1, 2)
+    a, b, c, d, e = (0, 0, 8), (0, 0, 33), (1, 0, 0), (0, 51, 55), (0, 0, 5)  # a, b and e lie on a vertical line
+    faces = [(a, d, c), (d, b, c), (b, a, c), (d, a, e), (b, d, e), (a, b, e)]
+    upright = [tuple(tuple(v * UNIT for v in p) for p in face) for face in faces]
+    assert (0, 0, 20) in checker.Mesh(upright, 64).touch() == voxels_of(upright, 6)
 
 
 def test_bounds_of_the_rules():

@@ -250,6 +250,14 @@ def test_time_and_variants_reach_the_loader(voxrt):
     assert kinds.count("ignored-option") == 2
 
 
+def test_an_image_of_fractions_is_refused_before_the_build(voxrt, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pyvista", None)
+    build = ("build", "house.obj", "-o", "out", "--fractions", "a.VTI", "--depth")
+    voxrt.fails(4, "at most 256 voxels per side", *build, 9)
+    voxrt.fails(5, "needs PyVista, which is not installed; pip install pyvista", *build, 4)
+    assert not Path("out").exists()
+
+
 def test_profile_has_a_row_a_stage(voxrt):
     finished = voxrt.succeeds("build", "house.obj", "--depth", "3", "--profile", "--json")
     lines = [line[2:] for line in finished.err.splitlines()]

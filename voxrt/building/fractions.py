@@ -17,6 +17,7 @@ from voxrt.options.option import merge
 from voxrt.plans.plan import fit_plan
 from voxrt.plans.stage_clock import StageClock
 from voxrt.sources.source import open_source
+from voxrt.view.cells import import_pyvista
 from voxrt.view.octant_files import write_image
 from voxrt.voxelize import DoesNotFitError, voxelize
 from voxrt.voxelize import volume_fractions as fractions_on_grid
@@ -85,6 +86,8 @@ def write_fractions(found: VolumeFractions, scene: Scene, path: str | os.PathLik
         An image of more than 256 voxels per side.
     OutputError
         The file cannot be written, or has another suffix.
+    ViewerError
+        ``.vti`` needs PyVista, which is not installed.
 
     Examples
     --------
@@ -93,11 +96,9 @@ def write_fractions(found: VolumeFractions, scene: Scene, path: str | os.PathLik
     >>> write_fractions(voxrt.volume_fractions(scene, depth=4), scene, "house-fractions.npz")
     """
     path = Path(path)
-    check_fractions_file(path)
-    if path.suffix == ".vti" and found.grid.depth > _DEEPEST_IMAGE:
-        raise DoesNotFitError(f"{path}: an image has at most 256 voxels per side; write .npz, or take depth 8")
+    check_fractions_file(path, found.grid.depth)
     with writing(path):
-        if path.suffix == ".vti":
+        if path.suffix.lower() == ".vti":
             write_image(path, fraction_image(found, scene), found.grid)
             return
         archive = io.BytesIO()
@@ -116,11 +117,16 @@ def write_fractions(found: VolumeFractions, scene: Scene, path: str | os.PathLik
         write_atomically(path, archive.getvalue())
 
 
-def check_fractions_file(path: Path) -> None:
-    """Refuse a file that fractions cannot be written to, with an OutputError."""
+def check_fractions_file(path: Path, depth: int | None) -> None:
+    """Refuse a file that fractions cannot be written to, as :func:`write_fractions` does. `depth`: None if unknown."""
     check_file(path)
-    if path.suffix not in FRACTION_SUFFIXES:
+    if path.suffix.lower() not in FRACTION_SUFFIXES:
         raise OutputError(f"{path}: fractions are written as {' or '.join(FRACTION_SUFFIXES)}; name such a file")
+    if path.suffix.lower() != ".vti":
+        return
+    if depth is not None and depth > _DEEPEST_IMAGE:
+        raise DoesNotFitError(f"{path}: an image has at most 256 voxels per side; write .npz, or take depth 8")
+    import_pyvista()
 
 
 def fraction_image(found: VolumeFractions, scene: Scene) -> NDArray[np.float64]:

@@ -14,8 +14,9 @@ namespace {
 class RuledVoxels {
 public:
     RuledVoxels(const SparseVoxels& around, RuleFindings& findings)
-        : voxels_(around), only_(material_of_all()), bricks_(around, std::move(findings.bricks), only_ == 0),
-          owned_(std::move(findings.owned)), mixed_(std::move(findings.mixed)) {
+        : voxels_(around), only_(findings.mixed.empty() ? material_of_all() : 0),
+          bricks_(around, std::move(findings.bricks), only_ == 0), owned_(std::move(findings.owned)),
+          mixed_(std::move(findings.mixed)) {
         std::sort(mixed_.begin(), mixed_.end(), [](const auto& a, const auto& b) { return a.code < b.code; });
         has_rivals_ = only_ == 0 && std::any_of(owned_.begin(), owned_.end(),
                                                 [this](const auto& one) { return one.object != owned_[0].object; });
@@ -41,7 +42,7 @@ public:
 
     /// Finds by areas what shows of several materials. The bricks and orphans must be final.
     void find_shown(const BrickArea& area, const FindAreas& find_areas, const Workers& workers) {
-        if (material_of_surfaces() != 0)
+        if (mixed_.empty() && material_of_surfaces() != 0)
             return;
         std::vector<ContestedVoxels> found((bricks_.size() + kBricks - 1) / kBricks);
         for_each_brick(workers, [&](size_t i) {
@@ -364,7 +365,7 @@ private:
     }
 
     const SparseVoxels& voxels_;
-    uint8_t only_; // the material of all, or 0
+    uint8_t only_; // the material of all voxels and surfaces, or 0
     RuleBricks bricks_;
     std::vector<OwnedSurface> owned_; // by code and object, where there are several
     bool has_rivals_ = false;         // several objects, and materials

@@ -25,7 +25,9 @@ struct HalfDoubt {
 class RuleTile {
 public:
     /// For tiles of a grid of `side` voxels. `has_owners`: whether it is noted which object has which surface.
-    RuleTile(int side, bool has_owners) : filled_(side), surface_(side), mixed_(side), has_owners_(has_owners) {}
+    /// `has_materials`: whether surfaces have several materials.
+    RuleTile(int side, bool has_owners, bool has_materials)
+        : filled_(side), surface_(side), mixed_(side), has_owners_(has_owners), has_materials_(has_materials) {}
 
     /// Empties it for the tile at (tile_x, tile_y), in tiles.
     void clear(int tile_x, int tile_y) {
@@ -68,7 +70,7 @@ public:
         if (is_empty(surface))
             return;
         surface_.claim(column, k, surface, kAny, nullptr);
-        Slices several = without(surface, claimed);
+        Slices several = has_materials_ ? without(surface, claimed) : Slices{};
         for (int z = 0; z < kBrickSide; ++z)
             several[size_t(z)] |= mixed[size_t(z)];
         if (!is_empty(several))
@@ -258,7 +260,7 @@ private:
     }
 
     TileVoxels filled_, surface_, mixed_;
-    bool has_owners_;
+    bool has_owners_, has_materials_;
     std::vector<uint32_t> sum_rows_; // by slot: where the sums of volumes stand
     std::vector<size_t> summed_;     // the slots that have some
     std::vector<Sums> sums_;

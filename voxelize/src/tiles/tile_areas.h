@@ -80,7 +80,7 @@ private:
         int winding = 0;
         bool found = false;
         const double x = point[0] * kUnit, y = point[1] * kUnit, z = point[2] * kUnit;
-        near.for_each_at(voxel[0], voxel[1], [&](const TileSolids::Listed& one) {
+        near.for_each_around(voxel[0], voxel[1], x, y, [&](const TileSolids::Listed& one) {
             if (one.low[2] > z || one.low[0] > x || one.high[0] < x || one.low[1] > y || one.high[1] < y)
                 return;
             const uint32_t of = parts_[one.part].object;

@@ -5,7 +5,10 @@
 #include "../faces/exact_predicates.h"
 #include "rule_tile.h"
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
+#include <span>
 #include <tuple>
 
 namespace voxrt::voxelize {
@@ -94,6 +97,21 @@ public:
         }
     }
 
+    /// Calls take(triangle) with those in column (x, y) of the grid whose bounds may hold a point: u and v along x and
+    /// y.
+    template <class Take> void for_each_around(int x, int y, double u, double v, Take take) {
+        if (starts_.empty())
+            index();
+        constexpr uint32_t kFew = 32;
+        const auto column = size_t((y - y_) * kTileSide + x - x_);
+        if (starts_[column + 1] - starts_[column] <= kFew)
+            return for_each_at(x, y, take);
+        const Squares& squares = squares_in(column);
+        const size_t at = squares.at(u - double(x * kUnit), v - double(y * kUnit));
+        for (uint32_t i = squares.starts[at]; i < squares.starts[at + 1]; ++i)
+            take(triangles_[squares.listed[i]]);
+    }
+
     /// Those of a part in column (x, y) of the grid.
     void find(uint32_t part, int x, int y, std::vector<SolidTriangle>& found) {
         found.clear();
@@ -141,6 +159,52 @@ private:
                 take(size_t(*at));
     }
 
+    /// The triangles of a column by squares of it: those around a point are found without a look at all.
+    struct Squares {
+        int per_side = 0; // a power of two
+        std::vector<uint32_t> starts, listed;
+
+        /// The square that holds a point, from the column's lowest corner.
+        size_t at(double u, double v) const { return size_t(row(v) * per_side + row(u)); }
+        int row(double along) const { return std::clamp(int(std::floor(along * per_side / kUnit)), 0, per_side - 1); }
+    };
+
+    const Squares& squares_in(size_t column) {
+        constexpr size_t kMostPerTriangle = 8; // squares
+        if (squares_.empty())
+            squares_.resize(size_t{kTileSide * kTileSide});
+        Squares& squares = squares_[column];
+        if (squares.per_side != 0)
+            return squares;
+        const std::span own(listed_.data() + starts_[column], listed_.data() + starts_[column + 1]);
+        const int64_t corner[2] = {(x_ + int64_t(column) % kTileSide) * kUnit,
+                                   (y_ + int64_t(column) / kTileSide) * kUnit};
+        const auto for_each_square = [&](auto take) {
+            for (const uint32_t number : own) {
+                const Listed& t = triangles_[number];
+                const auto row = [&](size_t axis, int64_t at) { return squares.row(double(at - corner[axis])); };
+                for (int v = row(1, t.low[1]); v <= row(1, t.high[1]); ++v)
+                    for (int u = row(0, t.low[0]); u <= row(0, t.high[0]); ++u)
+                        take(size_t(v * squares.per_side + u), number);
+            }
+        };
+        for (squares.per_side = 64; squares.per_side > 1; squares.per_side /= 2) {
+            size_t count = size_t(squares.per_side) * size_t(squares.per_side);
+            if (count > own.size())
+                continue;
+            for_each_square([&](size_t, uint32_t) { ++count; });
+            if (count <= kMostPerTriangle * own.size())
+                break;
+        }
+        squares.starts.assign(size_t(squares.per_side) * size_t(squares.per_side) + 1, 0);
+        for_each_square([&](size_t at, uint32_t) { ++squares.starts[at + 1]; });
+        std::partial_sum(squares.starts.begin(), squares.starts.end(), squares.starts.begin());
+        squares.listed.resize(squares.starts.back());
+        std::vector<uint32_t> next = squares.starts;
+        for_each_square([&](size_t at, uint32_t number) { squares.listed[next[at]++] = number; });
+        return squares;
+    }
+
     void index() {
         starts_.assign(size_t{kTileSide * kTileSide} + 1, 0);
         for (const Listed& one : triangles_)
@@ -156,6 +220,7 @@ private:
     int x_, y_;
     std::vector<Listed> triangles_;
     std::vector<uint32_t> starts_, listed_; // by column: where its triangles' numbers start
+    std::vector<Squares> squares_;          // by column, made where they are asked for
 };
 
 } // namespace voxrt::voxelize

@@ -21,8 +21,9 @@ inline constexpr double kNotedOpening = 0.01;
 
 /// What a thread keeps from tile to tile.
 struct Scratch {
-    Scratch(int side, size_t objects, size_t parts, bool has_rule)
-        : surface(side), tile(side), rule(has_rule ? std::make_unique<RuleTile>(side, objects > 1) : nullptr),
+    Scratch(int side, size_t objects, size_t parts, bool has_rule, bool has_materials)
+        : surface(side), tile(side),
+          rule(has_rule ? std::make_unique<RuleTile>(side, objects > 1, has_materials) : nullptr),
           object_voxels(objects, 0), shell_of_open(objects, 0), inside_of_open(objects, 0), overlaps_itself(parts, 0),
           positive(objects, 0), negative(objects, 0) {
         fill.use_rule(rule.get());

@@ -20,6 +20,21 @@ uint32_t every_other_bit(uint64_t code) {
     return result;
 }
 
+/// Whether surfaces of parts have several materials. Those with rasters count as if they had.
+bool have_several_materials(const std::vector<PartView>& parts) {
+    uint8_t first = 0;
+    const auto differs = [&first](uint8_t material) {
+        first = first == 0 ? material : first;
+        return material != first;
+    };
+    return std::any_of(parts.begin(), parts.end(), [&differs](const PartView& part) {
+        if (part.material != 0)
+            return differs(part.material);
+        const MeshView& mesh = *part.mesh;
+        return !mesh.rasters.sizes.empty() || std::any_of(mesh.materials.begin(), mesh.materials.end(), differs);
+    });
+}
+
 /// Adds what the threads found of all objects, and forgets it.
 void tally_objects(const std::vector<PartView>& parts, std::vector<std::unique_ptr<Scratch>>& scratch,
                    std::vector<ObjectTally>& out) {
@@ -135,7 +150,8 @@ struct BlockVoxelizer::State {
         const TileWorker worker(parts, bins, side, engine, volumes);
         workers.run(tiles.size(), [&](size_t job, int thread) {
             if (!scratch[size_t(thread)])
-                scratch[size_t(thread)] = std::make_unique<Scratch>(side, objects, parts.size(), has_rule);
+                scratch[size_t(thread)] =
+                    std::make_unique<Scratch>(side, objects, parts.size(), has_rule, has_materials);
             if (volumes)
                 worker.find_volumes(tiles[job], *scratch[size_t(thread)], found[job]);
             else
@@ -227,7 +243,8 @@ struct BlockVoxelizer::State {
     std::vector<PartView> parts;
     size_t objects;
     Thin thin;
-    bool has_rule = false; // some part has another rule than `touch`
+    bool has_rule = false;      // some part has another rule than `touch`
+    bool has_materials = false; // several, with a rule
     CoverageEngine engine = coverage_engines().front();
     Workers workers;
     TriangleBins bins;
@@ -242,6 +259,7 @@ BlockVoxelizer::BlockVoxelizer(int depth, std::vector<PartView> parts, size_t ob
     State& s = *state_;
     for (const PartView& part : s.parts)
         s.has_rule |= part.rule != Rule::touch;
+    s.has_materials = s.has_rule && have_several_materials(s.parts);
     s.bins = bin_triangles(s.parts, wanted, s.side, s.workers);
     s.seconds.bin = s.bins.seconds;
     s.seconds.analysis = s.lap() - s.bins.seconds;

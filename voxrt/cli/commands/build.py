@@ -60,7 +60,7 @@ def _build_all(command: BuildCommand) -> None:
     if command.fractions is not None:
         from voxrt.building.fractions import check_fractions_file  # noqa: PLC0415 - most builds write none
 
-        check_fractions_file(command.fractions)
+        check_fractions_file(command.fractions, command.options.depth)
         if len(command.assets) > 1:
             raise UsageError("--fractions is of one asset; build them one by one")
     waited = process_age()
