@@ -121,7 +121,15 @@ class SceneParts:
         """Return the report of each object, and the warnings, from what the native voxelizer says."""
         shown = [self._geometry == "collider" or not item.hidden for item in self.scene.objects]
         objects = tuple(
-            ObjectReport(item.name, source, ObjectMode(_native.OBJECT_MODES[mode]), int(count), moved, grown)
+            ObjectReport(
+                item.name,
+                source,
+                ObjectMode(_native.OBJECT_MODES[mode]),
+                int(count),
+                moved,
+                grown,
+                rule=item.rule or self._rule,
+            )
             for item, (source, moved, grown), mode, count, wanted in zip(
                 self.scene.objects, self._placements, result.object_modes, result.object_voxels, shown, strict=True
             )

@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
+from voxrt.voxelize.rules import Rule
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
@@ -106,6 +108,8 @@ class ObjectReport:
         Voxels by which rounding moved its lowest corner, per axis (x, y, z).
     grown
         Voxels by which rounding grew it, per axis.
+    rule
+        Which voxels are of it: its own rule, or that of the build.
     """
 
     name: str
@@ -114,6 +118,7 @@ class ObjectReport:
     voxels: int
     moved: tuple[float, float, float] = (0.0, 0.0, 0.0)
     grown: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    rule: Rule = "touch"
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -47,8 +47,7 @@ def build(source, folder, *options):
 def built(tmp_path_factory):
     """Where the examples are built from the sources, and the libraries with them."""
     folder = tmp_path_factory.mktemp("build")
-    # Not optimized: that takes a third of the time.
-    build(ROOT / "examples" / "cpp", folder, "-DCMAKE_DISABLE_FIND_PACKAGE_voxrt=ON", "-DCMAKE_BUILD_TYPE=Debug")
+    build(ROOT / "examples" / "cpp", folder, "-DCMAKE_DISABLE_FIND_PACKAGE_voxrt=ON")
     return folder
 
 

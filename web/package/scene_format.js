@@ -51,7 +51,7 @@
 /** `words`: the octree memory: pointers to blocks of eight words, and leaves 0xFFFFFFmm; `materials`: by id; entry 0
  * is empty space, with the background's colour; `baked`: what was baked; such a memory is shown flat. @typedef {{
  * words: Uint32Array, depth: number, grid: { origin: number[], voxelSize: number }, materials:
- * Required<Material>[], objects: { name: string, mode: string, voxels: number }[], warnings: Warning[], baked:
+ * Required<Material>[], objects: { name: string, mode: string, rule: Rule, voxels: number }[], warnings: Warning[], baked:
  * Baked | null, fitted: Fitted | null }} Built */
 
 /** @type {readonly Fill[]} */ export const FILLS = ["solid", "surface", "auto"];

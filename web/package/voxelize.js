@@ -3,7 +3,7 @@
 import { textBytes, VoxrtError } from "./instance.js";
 import { leftOut } from "./opacity.js";
 import { BAKED_COLOURS, COLOURS, DEPTH_LIMIT, FILLS, RULES, WRAPS } from "./scene_format.js";
-/** @import { Appearance, Baked, Built, Daylight, Fitted, Image, Options, Scene } from "./scene_format.js" */
+/** @import { Appearance, Baked, Built, Daylight, Fitted, Image, Options, Rule, Scene } from "./scene_format.js" */
 /** @import { Voxrt } from "./voxrt.js" */
 
 const MIRROR = 1 << 24;
@@ -23,7 +23,8 @@ export function voxelize(voxrt, scene, options) {
     const baked = bake && bakeLight(voxrt, bake);
     const fitted = budget ? fit(voxrt, budget) : null;
     if (baked && fitted) baked.colours = fitted.colours;
-    const built = { ...read(voxrt), depth, baked, fitted };
+    const rules = scene.objects.map((object) => object.rule ?? rule);
+    const built = { ...read(voxrt, rules), depth, baked, fitted };
     const left = { kind: "transparent", message: reasonOf(scene), count: transparent };
     if (transparent) built.warnings.unshift(left);
     wasm.vx_scene_begin();
@@ -111,8 +112,8 @@ function fit(voxrt, words) {
   return { words, wordsBefore, wordsShared, surface, changed, appeared, recoloured, colours };
 }
 
-/** Read what was built. @param {Voxrt} voxrt */
-function read(voxrt) {
+/** Read what was built. @param {Voxrt} voxrt @param {Rule[]} rules of the objects */
+function read(voxrt, rules) {
   const { wasm } = voxrt;
   const voxels = voxrt.view(BigInt64Array, wasm.vx_object_voxels(), wasm.vx_object_count()).slice();
   return {
@@ -127,6 +128,7 @@ function read(voxrt) {
     objects: Array.from(voxels, (count, i) => ({
       name: voxrt.string(wasm.vx_object_name(i)),
       mode: voxrt.string(wasm.vx_object_mode(i)),
+      rule: rules[i],
       voxels: Number(count),
     })),
     warnings: Array.from({ length: wasm.vx_warning_count() }, (_, i) => ({
