@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
-from voxrt.voxelize.rules import Rule
+from voxrt.voxelize.rules import Rule  # noqa: TC001 - msgspec reads it
 
 if TYPE_CHECKING:
     import numpy as np

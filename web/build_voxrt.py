@@ -24,6 +24,7 @@ LEFT_OUT_ENDS = ("_avx2.cpp", "_avx512.cpp", "_bindings.cpp")
 # Folders and files of what runs once per mesh or memory, or by rules that few ask for, and the largest files: a small
 # page matters more than their speed.
 COMPILED_SMALL = {"faces", "holes", "mesh", "scene", "sight", "budget", "files", "surface", "src", "rules", "colour"}
+COMPILED_SMALL |= {"build", "pool", "query", "light", "views"}
 COMPILED_SMALL |= {"exact_volume.cpp", "framing.cpp", "regions.cpp", "triangle_bins.cpp", "voxelizer.cpp"}
 
 

@@ -66,7 +66,7 @@ def assert_same_memory(found: dict[str, Any], rom: Rom) -> None:
 
 def objects_of(built: Any) -> list[dict[str, Any]]:
     """The objects of a native build as the page describes them."""
-    return [{"name": one.name, "mode": str(one.mode), "voxels": one.voxels} for one in built.objects]
+    return [{"name": one.name, "mode": str(one.mode), "rule": one.rule, "voxels": one.voxels} for one in built.objects]
 
 
 def warnings_of(warnings: Any) -> list[dict[str, Any]]:
