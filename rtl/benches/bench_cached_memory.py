@@ -11,7 +11,7 @@ from bench_on_chip_memory import encoded, kept, some_word
 from cocotb.triggers import ReadOnly, RisingEdge
 from streams import drive, start
 
-BLOCK_BITS, CLOCKS, SLOTS, BASE = 6, 5, 15, 0x2000_0040
+BLOCK_BITS, CLOCKS, SLOTS = 6, 5, 15
 BLOCKS = 1 << BLOCK_BITS
 ERROR = encoded(0x7FFFFFFF)
 
@@ -23,7 +23,8 @@ class Memory:
         self.dut = dut
         self.lanes = len(dut.read_i)
         ports = [StructPort(dut.axi_o[p], dut.axi_i[p]) for p in range(2)]
-        self.bus = AxiMemory(ports, random.Random(random.randrange(1 << 30)), BASE)
+        self.base = random.randrange(1 << 26) << 5
+        self.bus = AxiMemory(ports, random.Random(random.randrange(1 << 30)), self.base)
         self.fill()
         self.requests = [[None] * SLOTS for _ in range(self.lanes)]  # By slot: the address that a ray waits for.
         self.clock_number = 0
@@ -35,7 +36,7 @@ class Memory:
         self.bus.words = [some_word() for _ in range(1 + 8 * BLOCKS)]
 
     async def begin(self):
-        await start(self.dut, read_i=0, start_i=0, flush_i=0, base_i=BASE, bus_rst_ni=0)
+        await start(self.dut, read_i=0, start_i=0, flush_i=0, base_i=self.base, bus_rst_ni=0)
         self.dut.bus_rst_ni.value = 1
         self.dut.rst_ni.value = 1
 

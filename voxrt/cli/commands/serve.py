@@ -33,6 +33,7 @@ def run(options: ServeCommand) -> None:
     """Show scenes live in the browser until Ctrl-C."""
     from voxrt.board.errors import Refused  # noqa: PLC0415
     from voxrt.boards.board_scenes import asset_reader  # noqa: PLC0415 - it imports NumPy
+    from voxrt.serve.freed_memory import return_freed_memory  # noqa: PLC0415
     from voxrt.serve.scene_library import SceneLibrary, scene_names  # noqa: PLC0415
     from voxrt.serve.server_options import ServerOptions  # noqa: PLC0415
     from voxrt.serve.token import choose_token  # noqa: PLC0415
@@ -41,6 +42,7 @@ def run(options: ServeCommand) -> None:
         token = choose_token(options.host, options.token, options.token_file)
     except Refused as refusal:
         raise UsageError(str(refusal)) from refusal
+    return_freed_memory()
     first = read_scene(options.scenes[0], options.depth) if options.scenes else None
     named = {name: scene_files(path) for name, path in scene_names(options.scenes or _examples()).items()}
     library = SceneLibrary(asset_reader(options.depth), named, asset_reader(options.depth, memory_depth=options.depth))
