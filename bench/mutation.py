@@ -81,6 +81,11 @@ REASONS = {
     ),
     "registers generated/voxrt_registers.sv:795 const0 at A[0]": "a pulse is 0 again before the next write",
     "registers generated/voxrt_registers.sv:977 const0 at B[0]": "the flag of a bus, which this core does not have",
+    "cached_memory memory/voxrt_l2_cache.sv:199 inv at Y[1]": "which line of a set of the L2 makes room: time alone",
+    "cached_memory memory/voxrt_l2_cache.sv:199 inv at Y[0]": "which line of a set of the L2 makes room: time alone",
+    "cached_memory memory/voxrt_l2_cache.sv:228 const0 at Q[0]": "which line of a set of the L2 makes room: time alone",
+    "cached_memory memory/voxrt_l2_cache.sv:223 const1 at Y[0]": "which line of a set of the L2 makes room: time alone",
+    "cached_memory memory/voxrt_l2_cache.sv:228 const1 at Q[1]": "which line of a set of the L2 makes room: time alone",
     "plane_time common/voxrt_plane_time.sv:68 inv at WR_EN[51]": "bit 56 of a time of 55 bits; unread",
     "brightness shading/voxrt_brightness.sv:149 inv at Y[2]": (
         "bit 2 of a product of 50 bits, which a brightness of 8 bits shows for few"
