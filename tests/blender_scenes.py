@@ -58,6 +58,16 @@ def paint(name, colour, **inputs):
     return material
 
 
+def paint_by(attribute, name, data):
+    """Give a mesh a material whose colour is that of an attribute."""
+    material = paint(name, (1, 1, 1))
+    tree = material.node_tree
+    node = tree.nodes.new("ShaderNodeVertexColor")
+    node.layer_name = attribute
+    tree.links.new(node.outputs["Color"], tree.nodes["Principled BSDF"].inputs["Base Color"])
+    data.materials.append(material)
+
+
 def image(name="checks", size=8, alpha=False):
     made = bpy.data.images.new(name, size, size, alpha=True)
     pixels = []
@@ -293,12 +303,7 @@ def colour_attributes():
     colours = one.data.color_attributes.new("tint", "FLOAT_COLOR", "CORNER")
     for number, corner in enumerate(colours.data):
         corner.color = (number / 24, 1 - number / 24, 0.5, 1.0)
-    material = paint("tinted", (1, 1, 1))
-    tree = material.node_tree
-    node = tree.nodes.new("ShaderNodeVertexColor")
-    node.layer_name = "tint"
-    tree.links.new(node.outputs["Color"], tree.nodes["Principled BSDF"].inputs["Base Color"])
-    one.data.materials.append(material)
+    paint_by("tint", "tinted", one.data)
 
 
 @scene
@@ -360,12 +365,7 @@ def waves():
     painted = sheet.data.color_attributes.new("Col", "BYTE_COLOR", "CORNER")
     for number, corner in enumerate(painted.data):
         corner.color = (number % 5 / 5, number % 3 / 3, 0.4, 1)
-    material = paint("painted", (1, 1, 1))
-    tree = material.node_tree
-    node = tree.nodes.new("ShaderNodeVertexColor")
-    node.layer_name = "Col"
-    tree.links.new(node.outputs["Color"], tree.nodes["Principled BSDF"].inputs["Base Color"])
-    sheet.data.materials.append(material)
+    paint_by("Col", "painted", sheet.data)
     sheet.modifiers.new("thick", "SOLIDIFY").thickness = 0.2
     repeated = sheet.modifiers.new("repeated", "ARRAY")
     repeated.count, repeated.use_relative_offset, repeated.use_object_offset = 3, False, True

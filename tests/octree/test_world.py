@@ -1,6 +1,7 @@
 """Worlds that are edited, against dense arrays and dictionaries of voxels that are edited the slow way."""
 
 import threading
+import weakref
 
 import numpy as np
 import pytest
@@ -17,6 +18,15 @@ MATERIALS = (EMPTY, *(Material(f"m{i}", (i, 2 * i, 255 - i)) for i in range(1, 8
 
 def world_of(tree, **options):
     return World(Rom("world", tree, MATERIALS), **options)
+
+
+def test_a_world_does_not_keep_the_words_that_it_was_made_of():
+    rom = Rom("world", octree.from_dense(np.ones((8, 8, 8), np.uint8)), MATERIALS)
+    words = weakref.ref(rom.octree.words)
+    world = World(rom)
+    del rom
+    assert words() is None
+    assert np.array_equal(world.rom().octree.words, [0xFFFFFF01])
 
 
 def random_shape(rng, side):

@@ -142,16 +142,26 @@ async def test_trouble_is_told_and_passes():
 class SlowAtFullSize(FakeDevice):
     """Its frames of more than 16 columns take too long."""
 
+    def __init__(self):
+        super().__init__()
+        self.tried = []
+
     def frame(self, view, seconds=10.0, drop=None):
+        self.tried.append((view.size, seconds))
         if view.size[0] > 16:
             raise TooSlow("the frame took more than 1.0 s")
         return super().frame(view, seconds, drop)
 
 
 async def test_a_scene_that_is_too_slow_for_its_picture_is_shown_smaller():
-    async with controlled(SlowAtFullSize(), scene(material=5)) as (server, client):
+    device = SlowAtFullSize()
+    async with controlled(device, scene(material=5)) as (server, client):
         packet = await frame_where(client, lambda packet: packet.scene == 1)
         assert packet.frame.colour.shape == (12, 16, 3)
+        large = next(number for number, (size, _) in enumerate(device.tried) if size[0] > 16)
+        (_, limit), (smaller, rest) = device.tried[large : large + 2]
+        assert smaller == (16, 12)
+        assert rest == limit / 4  # the others wait
         assert pixel(packet)[0] == 5
         assert client.state["view"]["size"] == [16, 12]
         assert server.session.renderer.trouble is None

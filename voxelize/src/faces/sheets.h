@@ -78,6 +78,7 @@ private:
         const Vertex &u = at_[low], &v = at_[a.high];
         return are_coplanar(low, a, b) && normal_signs(u, v, at_[a.opposite]) == normal_signs(u, v, at_[b.opposite]);
     }
+
     /// Of two sheets upon one another, one is that of a part above, the other of a part below.
     void oppose(uint32_t face, uint32_t other) {
         const uint32_t a = sheets_.find(face), b = sheets_.find(other);
@@ -91,6 +92,7 @@ private:
         const bool in_front = volume6_of(at_[c[0]], at_[c[1]], at_[c[2]], v) < 0;
         is_known_[is_above_.find(2 * sheets_.find(face) + (in_front != faces_up(face)))] = true;
     }
+
     bool faces_up(uint32_t face) const {
         const Corners c = edges_.corners(face);
         return points_up(normal_signs(at_[c[0]], at_[c[1]], at_[c[2]]));
