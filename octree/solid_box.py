@@ -43,8 +43,10 @@ def solid_box(source: Octree | World, low: ArrayLike, high: ArrayLike, *, words:
     """
     start, end = as_box(low, high)
     sides = [above - below for below, above in zip(start, end, strict=True)]
-    if not 1 <= min(sides) <= max(sides) <= _MOST_SIDE:
-        raise ValueError(f"a box of {' x '.join(map(str, sides))} voxels cannot be cut out; make it smaller")
+    if min(sides) < 1:
+        raise ValueError(f"the box from {start} to {end} is empty; its end is one behind the highest voxel")
+    if max(sides) > _MOST_SIDE:
+        raise ValueError(f"a box of {' x '.join(map(str, sides))} voxels is too large; make it smaller")
     try:
         if isinstance(source, World):
             found, depth = source.native.solid_box(start, end, octants)

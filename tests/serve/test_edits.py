@@ -217,8 +217,8 @@ async def test_boxes_to_walk_in_have_bounds():
     async with editing(noise, ModelDevice(capacity=400_000)) as (server, client):
         for low, high, problem in (
             ([0, 0, 0], [64, 64, 64], "the most; make it smaller"),
-            ([0, 0, 0], [65537, 1, 1], "cannot be cut out; make it smaller"),
-            ([0, 0, 0], [0, 1, 1], "cannot be cut out"),
+            ([0, 0, 0], [65537, 1, 1], "65537 x 1 x 1 voxels is too large; make it smaller"),
+            ([0, 0, 0], [0, 1, 1], "is empty; its end is one behind the highest voxel"),
             ([2**40, 0, 0], [2**40 + 1, 1, 1], "out of reach|low"),
             ([0, 0], [1, 1, 1], "is no request"),
             ([4, 0, 0], [1, 1, 1], "below its start"),
