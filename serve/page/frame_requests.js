@@ -59,6 +59,11 @@ export class FrameRequests {
     Object.assign(this.#fields, fields);
     this.changed = true;
     this.#changedAt = performance.now();
+    this.showBusy(true);
+  }
+
+  /** Scripts and screen readers learn whether a finer picture will follow. @param {boolean} busy */ showBusy(busy) {
+    if (this.stage.getAttribute("aria-busy") !== String(busy)) this.stage.setAttribute("aria-busy", String(busy));
   }
 
   /** Forget what was not sent, since another view counts now. */

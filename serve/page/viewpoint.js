@@ -24,6 +24,7 @@ export class Viewpoint {
   /** @param {Move} how */ glide(how) {
     if (!this.pose) return;
     this.#glide.start(this.pose, how(this.pose), this.frames.resolution.seconds(this.frames.size) > 1);
+    this.frames.showBusy(true);
   }
 
   /** Forget the pose and what was not sent: another one counts now. @param {Pose} pose */
@@ -46,10 +47,7 @@ export class Viewpoint {
     }
     const { changed } = this.frames;
     const rests = this.frames.step(this.pose, gestures.active || flight.active);
-    // Scripts and screen readers learn whether a finer picture will follow.
-    const busy = String(!rests || gliding !== null);
-    const { stage } = this.frames;
-    if (stage.getAttribute("aria-busy") !== busy) stage.setAttribute("aria-busy", busy);
+    this.frames.showBusy(!rests || gliding !== null);
     return changed;
   }
 }

@@ -112,6 +112,15 @@ def test_page(tmp_path):
         assert browser.faults() == []
 
 
+@pytest.mark.parametrize("change", ["#flip-x", "#presets button:nth-child(2)", "[data-shading=flat]"])
+def test_the_picture_is_busy_from_the_change_on(change):
+    busy = "document.querySelector(arguments[0]).click(); return document.querySelector('#stage').ariaBusy"
+    with shown_page(scene_of("first", worlds.boxes(4, 9, 3), 4)) as (browser, _):
+        assert browser.until(f"{RESTS} && document.querySelector('#scene').innerText === 'first'")
+        assert browser.run(busy, change) == "true"
+        assert browser.until(RESTS)
+
+
 def test_scenes_that_were_opened_stay_in_the_list(tmp_path):
     files = write_rom(tmp_path, rom_of("second", worlds.ball(4), 4))
     with shown_page(scene_of("first", worlds.boxes(4, 9, 3), 4)) as (browser, _):

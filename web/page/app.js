@@ -171,7 +171,6 @@ export class App {
     this.#showLook();
     this.panel.show(memory);
     this.frames.change();
-    $("stage").setAttribute("aria-busy", "true");
     $("stage").dataset.scene = `${built.name} ${built.depth}`;
   }
 
