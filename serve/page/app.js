@@ -173,7 +173,7 @@ export class App {
     if (another || !mine || !this.#hadControl || !this.viewpoint.pose) {
       this.viewpoint.reset(another && mine ? this.firstView() : this.#poseOf(view.camera, view.size));
       if (mine) this.frames.change();
-      else this.frames.showBusy(false);
+      else if (this.#hadControl) this.frames.showBusy(false);
     }
     this.#hadControl = mine;
     $("scene").textContent = scene.number === 0 ? "" : scene.name;
