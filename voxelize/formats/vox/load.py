@@ -98,7 +98,7 @@ def _instances(path: Path, file: VoxFile, frame: int) -> tuple[list[_Instance], 
             raise AssetError(path, problem, place=f"scene node {number}", fix="the file is damaged; save it again")
         if visited > _INSTANCE_LIMIT or len(above) > _NESTING_LIMIT:
             raise DoesNotFitError(
-                f"{path}: more than {_INSTANCE_LIMIT} scene nodes, or {_NESTING_LIMIT} in one another; save fewer"
+                f"more than {_INSTANCE_LIMIT} scene nodes, or {_NESTING_LIMIT} in one another; save fewer"
             )
         path_here = (*above, number)
         if isinstance(node, Transform):
@@ -130,7 +130,7 @@ def _place(path: Path, file: VoxFile, instances: list[_Instance]) -> tuple[NDArr
     if total == 0:
         raise AssetError(path, "holds no visible voxel", fix="show at least one model")
     if total > _VOXEL_LIMIT:
-        raise DoesNotFitError(f"{path}: {total} voxels, and {_VOXEL_LIMIT} are the most; save fewer instances")
+        raise DoesNotFitError(f"{total} voxels, and {_VOXEL_LIMIT} are the most; save fewer instances")
     points, colours = [], []
     for instance in instances:
         model = file.models[instance.model]
