@@ -60,7 +60,10 @@ def read_vox(path: Path | str) -> tuple[Rom, tuple[SceneWarning, ...]]:
     <Rom 'house': depth 4, 721 words, 5 materials>
     """
     path = Path(path)
-    scene = load_vox(path)
+    try:
+        scene = load_vox(path)
+    except DoesNotFitError as error:
+        raise DoesNotFitError(f"{path}: {error}") from None
     low = scene.coordinates.min(axis=0)
     span = int((scene.coordinates.max(axis=0) - low).max()) + 1
     depth = max(1, (span - 1).bit_length())
