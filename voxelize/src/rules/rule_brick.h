@@ -9,6 +9,7 @@ namespace voxrt::voxelize {
 struct RuleBrick {
     uint64_t code; // Morton code of the brick's corner / 8
     Slices touched, filled, surface;
+    bool is_thick = false; // no voxel of it belongs to a thin part
 
     Slices removed() const { return without(touched, filled); }
 };

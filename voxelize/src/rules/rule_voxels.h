@@ -38,4 +38,9 @@ struct BrickArea {
 void apply_rule(SparseVoxels& voxels, const SparseVoxels& around, RuleFindings findings, const BrickArea& area,
                 Thin thin, const FindAreas& find_areas, std::vector<int64_t>& lost, const Workers& workers);
 
+/// The same for a scene of one material and one part, whose voxels are those that its rule fills: adds those of thin
+/// parts. Returns how many. `tiles`: their bricks.
+int64_t add_thin_parts(SparseVoxels& voxels, const SparseVoxels& around, std::vector<std::vector<RuleBrick>> tiles,
+                       const BrickArea& area, uint8_t material, const Workers& workers);
+
 } // namespace voxrt::voxelize

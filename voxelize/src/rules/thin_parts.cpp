@@ -1,6 +1,6 @@
 #include "thin_parts.h"
 
-#include "brick_window.h"
+#include "thin_voxels.h"
 
 namespace voxrt::voxelize {
 namespace {
@@ -13,7 +13,6 @@ struct ThinBrick {
 };
 
 // The 27 voxels around one: bit x + 3 y + 9 z, each 0 … 2.
-constexpr uint32_t kMiddle = 1u << 13;
 constexpr uint32_t kNoCorners = [] {
     uint32_t found = 0;
     for (int n = 0; n < 27; ++n)
@@ -90,44 +89,12 @@ bool leaves_none_alone(const BrickWindow<2>& filled, const BrickWindow<2>& touch
     return true;
 }
 
-/// The touched voxels of a brick that are neither solid in bulk nor beside a voxel that is, by the brick's own voxels.
-Slices thin_alone(const RuleBrick& brick) {
-    constexpr uint64_t lowest = 0x0101'0101'0101'0101, highest = lowest << 7;
-    uint64_t cubes[kBrickSide + 3] = {}; // by lowest corner, two slices further
-    for (size_t z = 0; z + 1 < kBrickSide; ++z) {
-        const uint64_t both = brick.filled[z] & brick.filled[z + 1], pairs = both & both >> 1 & ~highest;
-        cubes[z + 2] = pairs & pairs >> 8;
-    }
-    Slices found;
-    for (size_t z = 0; z < kBrickSide; ++z) {
-        const uint64_t near = cubes[z] | cubes[z + 1] | cubes[z + 2] | cubes[z + 3];
-        const uint64_t row = near | (near >> 1 & ~highest) | (near << 1 & ~lowest) | (near << 2 & ~(lowest * 3));
-        found[z] = brick.touched[z] & ~(row | row >> 8 | row << 8 | row << 16);
-    }
-    return found;
-}
-
-/// Those of the 3 x 3 x 3 bricks around that have voxels at most two away from some of the middle one.
-uint32_t bricks_near(const Slices& voxels) {
-    constexpr uint64_t first_two = 0x0303'0303'0303'0303;
-    const uint64_t any = any_of(voxels);
-    const bool reaches[6] = {(any & first_two) != 0, (any & first_two << 6) != 0,  (any & 0xFFFF) != 0,
-                             any >> 48 != 0,         (voxels[0] | voxels[1]) != 0, (voxels[6] | voxels[7]) != 0};
-    uint32_t found = kMiddle;
-    for (int axis = 0, step = 1; axis < 3; ++axis, step *= 3)
-        found |= (reaches[2 * axis] ? found >> step : 0) | (reaches[2 * axis + 1] ? found << step : 0);
-    return found;
-}
-
 /// The voxels of a brick that belong to thin parts.
 Slices find_thin(const RuleBricks& bricks, size_t i) {
-    const Slices alone = thin_alone(bricks[i]);
-    if (is_empty(alone))
-        return alone;
-    BrickWindow<2> bulk;
     const auto filled = [](const RuleBrick& b) -> const Slices& { return b.filled; };
-    bulk.gather(bricks.sets(bricks.around(i, bricks_near(alone)), filled));
-    return without(alone, bulk.near_cubes());
+    return bricks[i].is_thick
+               ? Slices{}
+               : thin_voxels(bricks[i], [&](uint32_t wanted) { return bricks.sets(bricks.around(i, wanted), filled); });
 }
 
 /// The voxels of a brick that are not filled, of thin parts or beside one of their voxels.
@@ -179,7 +146,7 @@ void take(const RuleBricks& bricks, ThinBrick& thin, int turn) {
 
 } // namespace
 
-void keep_thin_parts(RuleBricks& bricks, const Workers& workers) {
+std::vector<AddedVoxels> keep_thin_parts(RuleBricks& bricks, const Workers& workers) {
     constexpr size_t kBricks = 64; // per job
     const size_t jobs = (bricks.size() + kBricks - 1) / kBricks;
     LargeVector<Slices> of_thin_parts;
@@ -193,7 +160,7 @@ void keep_thin_parts(RuleBricks& bricks, const Workers& workers) {
         }
     });
     if (std::none_of(has_some.begin(), has_some.end(), [](uint8_t some) { return some != 0; }))
-        return;
+        return {};
     std::vector<std::vector<ThinBrick>> found(jobs);
     workers.run(jobs, [&](size_t job, int) {
         for (size_t i = job * kBricks; i < std::min(bricks.size(), (job + 1) * kBricks); ++i) {
@@ -224,6 +191,11 @@ void keep_thin_parts(RuleBricks& bricks, const Workers& workers) {
             for (int z = 0; z < kBrickSide; ++z)
                 bricks[t.brick].filled[z] &= ~t.taken[z];
     }
+    std::vector<AddedVoxels> added;
+    for (const ThinBrick& t : thin)
+        if (const Slices left = without(t.candidates, without(t.candidates, bricks[t.brick].filled)); !is_empty(left))
+            added.push_back({t.brick, left});
+    return added;
 }
 
 } // namespace voxrt::voxelize

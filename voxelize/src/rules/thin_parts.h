@@ -21,7 +21,13 @@ namespace voxrt::voxelize {
 /// How many voxels around a block decide what thin parts keep in it, at most.
 inline constexpr int kThinReach = 56;
 
-/// Fills voxels of thin parts.
-void keep_thin_parts(RuleBricks& bricks, const Workers& workers);
+/// Voxels of a brick.
+struct AddedVoxels {
+    uint32_t brick;
+    Slices voxels;
+};
+
+/// Fills voxels of thin parts. Returns which ones.
+std::vector<AddedVoxels> keep_thin_parts(RuleBricks& bricks, const Workers& workers);
 
 } // namespace voxrt::voxelize

@@ -1,6 +1,7 @@
 // The bricks and octants of tiles, laid out one after another in Morton order.
 #pragma once
 
+#include "../grid/push_octant.h"
 #include "../work/workers.h"
 #include "tile_order.h"
 
@@ -8,27 +9,6 @@
 #include <vector>
 
 namespace voxrt::voxelize {
-
-/// Adds the octant of a whole cube. Eight equal octants in a row that share a parent become the parent.
-inline void push_cube(SparseVoxels& out, uint64_t code, uint8_t level, uint8_t material) {
-    auto& codes = out.octant_codes;
-    auto& levels = out.octant_levels;
-    auto& materials = out.octant_materials;
-    codes.push_back(code);
-    levels.push_back(level);
-    materials.push_back(material);
-    while (codes.size() >= 8 && (codes.back() & 7) == 7) {
-        const size_t first = codes.size() - 8;
-        for (size_t i = first; i < codes.size(); ++i)
-            if (levels[i] != levels.back() || materials[i] != materials.back() || codes[i] >> 3 != codes.back() >> 3)
-                return;
-        codes.resize(first + 1);
-        levels.resize(first + 1);
-        materials.resize(first + 1);
-        codes[first] >>= 3;
-        ++levels[first];
-    }
-}
 
 /// Appends the octants of all runs. Those of a cube are joined already.
 inline void gather_octants(const std::vector<TileResult>& tiles, const std::vector<CubeRun>& runs, SparseVoxels& out) {
@@ -45,7 +25,7 @@ inline void gather_octants(const std::vector<TileResult>& tiles, const std::vect
         const TileResult& tile = tiles[run.tile];
         const uint32_t i = run.octants_from;
         if (i + 1 == run.octants_to && tile.octant_levels[i] == kCubeLevel) {
-            push_cube(out, tile.octant_codes[i], kCubeLevel, tile.octant_materials[i]);
+            push_octant(out, tile.octant_codes[i], kCubeLevel, tile.octant_materials[i]);
         } else {
             append(out.octant_codes, tile.octant_codes, run);
             append(out.octant_levels, tile.octant_levels, run);

@@ -15,6 +15,18 @@
 
 namespace voxrt::voxelize {
 
+/// How far a sum of volumes of meshes with some triangles may be from the true one; boxes have no rounding.
+///
+/// u = 2^-53, N triangles, coordinates below 2^8 voxels (wider triangles are cut in TwoDoubles). Where an edge
+/// meets a plane is found within 6 * 2^8 u along the plane; three cuts, one after another, give corners within
+/// d = 2^-40.8 of those of the true piece. In a cell a piece has a perimeter below 6 and an area below 1.5, so the
+/// area seen from above is wrong by 6 d at most and the volume by 8 d, once per triangle and column: pieces of one
+/// column share the corners where planes between its voxels cut. Rounding in the cell is a few u per piece, of at
+/// most 2^16. Whole cells below a plane have an error of 32 u; vector_pieces.h stays below 2^-34 (kHalfLimit). All
+/// that is below 2^-32 per triangle. Sums of N numbers up to N in size add N^2 u, and those along 2^16 voxels of a
+/// column N 2^-37.
+inline double error_of_volumes(double triangles) { return triangles * 0x1p-31 + triangles * triangles * 0x1p-52; }
+
 /// Voxels of a brick whose volumes add up to about a half.
 struct HalfDoubt {
     size_t brick; // among those listed
@@ -113,17 +125,8 @@ public:
         return doubts;
     }
 
-    /// How far a sum of volumes may be from the true one; 0 where all are of boxes, which have no rounding.
-    ///
-    /// u = 2^-53, N triangles, coordinates below 2^8 voxels (wider triangles are cut in TwoDoubles). Where an edge
-    /// meets a plane is found within 6 * 2^8 u along the plane; three cuts, one after another, give corners within
-    /// d = 2^-40.8 of those of the true piece. In a cell a piece has a perimeter below 6 and an area below 1.5, so the
-    /// area seen from above is wrong by 6 d at most and the volume by 8 d, once per triangle and column: pieces of one
-    /// column share the corners where planes between its voxels cut. Rounding in the cell is a few u per piece, of at
-    /// most 2^16. Whole cells below a plane have an error of 32 u; vector_pieces.h stays below 2^-34 (kHalfLimit). All
-    /// that is below 2^-32 per triangle. Sums of N numbers up to N in size add N^2 u, and those along 2^16 voxels of a
-    /// column N 2^-37.
-    double error_bound() const { return triangles_ * 0x1p-31 + triangles_ * triangles_ * 0x1p-52; }
+    /// How far a sum of volumes may be from the true one.
+    double error_bound() const { return error_of_volumes(triangles_); }
 
     /// Calls take(part) with the parts whose volumes a voxel of a brick sums.
     template <class Take> void for_each_summand(const HalfDoubt& brick, int z, int bit, Take take) const {

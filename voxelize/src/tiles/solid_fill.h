@@ -13,6 +13,7 @@
 #include "../mesh/mesh_analysis.h"
 #include "column_winding.h"
 #include "generalized_inside.h"
+#include "lone_rule.h"
 #include "rule_tile.h"
 #include "tile_voxels.h"
 
@@ -39,8 +40,11 @@ struct Claim {
 
 class SolidFill {
 public:
-    /// Where what rules fill is noted; null where all parts have `touch`.
-    void use_rule(RuleTile* rule) { rule_ = rule; }
+    /// Where what rules fill is noted; both null where all parts have `touch`.
+    void use_rule(RuleTile* rule, LoneRule* lone) {
+        rule_ = rule;
+        lone_ = lone;
+    }
 
     /// Claims the shell alone, which every rule fills.
     Claim claim_shell(TileVoxels& tile, TileSurface& object) {
@@ -56,6 +60,8 @@ public:
             result.voxels += tile.claim(column, k, shell, brick.material, cells, rule_ ? &claimed : nullptr);
             if (rule_)
                 rule_->add(column, k, shell, shell, claimed, object.mixed(brick));
+            if (lone_)
+                lone_->add(column, k, shell, shell);
         }
         return result;
     }
@@ -124,7 +130,7 @@ private:
         count_work(20 * uint32_t(object.height()));
         ColumnWinding winding;
         const int slices = std::min(object.side(), kBrickSide);
-        const bool has_volumes = rule_ && rule_->asks_for_volumes();
+        const bool has_volumes = lone_ ? lone_->asks_for_volumes() : rule_ && rule_->asks_for_volumes();
         uint64_t summed = 0; // columns whose volume is summed in below_: the last slice had surface there
         while (k < object.height()) {
             const ShellBrick* brick = object.find(column, k);
@@ -142,7 +148,9 @@ private:
             const Crossings crossings(*brick);
             const uint32_t index = object.index_of(*brick);
             const VolumePieces* pieces = brick->pieces == kNone ? nullptr : &object.pieces(brick->pieces);
-            std::array<double, kBrickVoxels>* volumes = has_volumes ? &rule_->room_for_volumes(column, k) : nullptr;
+            std::array<double, kBrickVoxels>* volumes = !has_volumes ? nullptr
+                                                        : lone_      ? &lone_->volumes()
+                                                                     : &rule_->room_for_volumes(column, k);
             for (int z = 0; z < slices; ++z) {
                 // Below its surface a solid fills as many voxels as the winding number says, which has no rounding.
                 for (uint64_t begun = surface[z] & ~summed; begun != 0; begun &= begun - 1)
@@ -198,6 +206,8 @@ private:
                 result.voxels += tile.claim(column, k, mask, interior, nullptr);
                 if (rule_)
                     rule_->add(column, k, mask, {}, {});
+                if (lone_)
+                    lone_->add(column, k, mask, mask);
             }
         }
     }
@@ -262,7 +272,7 @@ private:
                 claim_run(tile, column, k, k + 1, ~uint64_t{0}, interior, result);
                 continue;
             }
-            if (rule_ && !rule_->fills_all() && mixed) {
+            if (mixed && (lone_ || (rule_ && !rule_->fills_all()))) {
                 const Slices holds = inside_.inside_at_surface(column, k, surface, numbers_);
                 for (int z = 0; z < kBrickSide; ++z)
                     within[z] |= holds[z];
@@ -288,6 +298,12 @@ private:
         result.inside += count(hidden);
         if (is_empty(mask))
             return;
+        if (lone_) {
+            const Slices filled = lone_filled(column, k, shell, mask, hidden, within, object.held(brick));
+            if (!is_empty(filled))
+                result.voxels += tile.claim(column, k, filled, interior, nullptr);
+            return;
+        }
         Slices claimed;
         result.voxels += claim_cells(tile, object, column, k, brick, mask, hidden, interior, claimed);
         if (!rule_)
@@ -304,6 +320,19 @@ private:
             claimed[z] &= shell[z];
         }
         rule_->add(column, k, filled, shell, claimed, object.mixed(brick));
+    }
+
+    /// What a lone part fills of a brick whose voxels `touched` it touches.
+    Slices lone_filled(int column, int k, const Slices& shell, const Slices& touched, const Slices& hidden,
+                       const Slices& within, const Slices& held) {
+        const bool by_volume = lone_->asks_for_volumes() && !is_capped_;
+        Slices filled;
+        for (int z = 0; z < kBrickSide; ++z)
+            filled[z] = ((by_volume ? hidden[z] : within[z]) | held[z]) & touched[z];
+        if (by_volume)
+            lone_->fill_halves(column, k, shell, touched, filled);
+        lone_->add(column, k, touched, filled);
+        return filled;
     }
 
     /// Claims the shell and what is hidden behind it: `mask`. `claimed` becomes what was free, where a rule wants it.
@@ -333,6 +362,7 @@ private:
     }
 
     RuleTile* rule_ = nullptr;
+    LoneRule* lone_ = nullptr;
     bool is_capped_ = false;
     std::array<double, 64> below_{}; // by column: the volume below the slice, per voxel
     std::vector<RepeatedCrossing> repeated_;

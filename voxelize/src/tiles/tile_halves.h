@@ -10,7 +10,8 @@ public:
     using TileParts::TileParts;
 
     /// Fills those of some voxels whose volumes add up to a half. `rule` summed them; `buffer`: for vertices.
-    void decide(const std::vector<HalfDoubt>& doubts, uint32_t index, const RuleTile& rule, std::vector<Vertex>& buffer,
+    template <class Summed>
+    void decide(const std::vector<HalfDoubt>& doubts, uint32_t index, const Summed& rule, std::vector<Vertex>& buffer,
                 std::vector<RuleBrick>& bricks) const {
         const int x0 = int(index) % bins_.tiles_per_side * kTileSide;
         const int y0 = int(index) / bins_.tiles_per_side * kTileSide;

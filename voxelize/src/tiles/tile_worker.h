@@ -21,16 +21,17 @@ inline constexpr double kNotedOpening = 0.01;
 
 /// What a thread keeps from tile to tile.
 struct Scratch {
-    Scratch(int side, size_t objects, size_t parts, bool has_rule, bool has_materials)
-        : surface(side), tile(side),
-          rule(has_rule ? std::make_unique<RuleTile>(side, objects > 1, has_materials) : nullptr),
+    /// `rule`, `lone`: null, or what one of them is to be.
+    Scratch(int side, size_t objects, size_t parts, std::unique_ptr<RuleTile> of_rule, std::unique_ptr<LoneRule> of_lone)
+        : surface(side), tile(side), rule(std::move(of_rule)), lone(std::move(of_lone)),
           object_voxels(objects, 0), shell_of_open(objects, 0), inside_of_open(objects, 0), overlaps_itself(parts, 0),
           positive(objects, 0), negative(objects, 0) {
-        fill.use_rule(rule.get());
+        fill.use_rule(rule.get(), lone.get());
     }
     TileSurface surface;
     TileVoxels tile;
-    std::unique_ptr<RuleTile> rule; // null where all parts have `touch`
+    std::unique_ptr<RuleTile> rule; // these two are null where all parts have `touch`, or else one of them
+    std::unique_ptr<LoneRule> lone;
     SolidFill fill;
     TileSorter sorter;
     std::vector<Vertex> vertices;
@@ -66,6 +67,8 @@ public:
         const int tile_x = int(index) % bins_.tiles_per_side, tile_y = int(index) / bins_.tiles_per_side;
         for_each_part(index, s, [](uint32_t) {});
         Stopwatch lap;
+        if (s.lone)
+            s.object_voxels[0] += take_lone(index, s, out);
         if (!s.tile.empty())
             s.sorter.sort(s.tile, slot, tile_x, tile_y, out);
         if (s.rule)
@@ -89,6 +92,24 @@ public:
     }
 
 private:
+    /// Takes what a lone part's rule has found in a tile. Returns how many voxels more it fills.
+    int64_t take_lone(uint32_t index, Scratch& s, TileResult& out) const {
+        int64_t added = 0;
+        if (!s.lone->doubts().empty()) {
+            TileHalves(parts_, bins_, side_).decide(s.lone->doubts(), index, *s.lone, s.vertices, s.lone->bricks());
+            for (const HalfDoubt& doubt : s.lone->doubts())
+                if (const Slices& filled = s.lone->bricks()[doubt.brick].filled; !is_empty(filled))
+                    added += s.tile.claim(doubt.column, doubt.k, filled, material_of(parts_[0]), nullptr);
+        }
+        s.lone->take_bricks(s.tile, out.rule_bricks);
+        return added;
+    }
+
+    /// The material of what a part encloses.
+    static uint8_t material_of(const PartView& part) {
+        return part.material != 0 ? part.material : part.mesh->materials[0];
+    }
+
     /// Claims what the parts of a tile cover. `begin`: called with the object of each part before it is claimed.
     template <class Begin> void for_each_part(uint32_t index, Scratch& s, Begin begin) const {
         const int tile_x = int(index) % bins_.tiles_per_side, tile_y = int(index) / bins_.tiles_per_side;
@@ -99,11 +120,13 @@ private:
             s.rule->clear(tile_x, tile_y);
         for_each_run(index, [&](uint32_t part, std::span<const BinnedTriangle> triangles) {
             begin(parts_[part].object);
+            const size_t listed = triangles[0].triangle != kWholePart   ? triangles.size()
+                                  : parts_[part].kind == PartKind::mesh ? parts_[part].mesh->triangle_count()
+                                                                        : 0;
             if (s.rule)
-                s.rule->begin(part, parts_[part].object, parts_[part].rule,
-                              triangles[0].triangle != kWholePart   ? triangles.size()
-                              : parts_[part].kind == PartKind::mesh ? parts_[part].mesh->triangle_count()
-                                                                    : 0);
+                s.rule->begin(part, parts_[part].object, parts_[part].rule, listed);
+            if (s.lone)
+                s.lone->clear(tile_x, tile_y, listed);
             if (parts_[part].kind == PartKind::mesh) {
                 add_mesh(part, triangles, window, s);
             } else {
@@ -144,7 +167,7 @@ private:
         const bool has_holes = capped != nullptr && !capped->cap_winding.empty();
         if (s.surface.empty() && !has_holes)
             return;
-        const uint8_t interior = part.material != 0 ? part.material : part.mesh->materials[0];
+        const uint8_t interior = material_of(part);
         const Claim claim = !fills(part.fill) ? s.fill.claim_shell(s.tile, s.surface)
                             : has_holes ? s.fill.claim_capped_solid(s.tile, s.surface, interior, capped->cap_winding,
                                                                     analysis.box, window)

@@ -150,8 +150,11 @@ struct BlockVoxelizer::State {
         const TileWorker worker(parts, bins, side, engine, volumes);
         workers.run(tiles.size(), [&](size_t job, int thread) {
             if (!scratch[size_t(thread)])
-                scratch[size_t(thread)] =
-                    std::make_unique<Scratch>(side, objects, parts.size(), has_rule, has_materials);
+                scratch[size_t(thread)] = std::make_unique<Scratch>(
+                    side, objects, parts.size(),
+                    has_rule && (volumes || !is_lone()) ? std::make_unique<RuleTile>(side, objects > 1, has_materials)
+                                                        : nullptr,
+                    !volumes && is_lone() ? std::make_unique<LoneRule>(parts[0].rule, thin) : nullptr);
             if (volumes)
                 worker.find_volumes(tiles[job], *scratch[size_t(thread)], found[job]);
             else
@@ -193,10 +196,15 @@ struct BlockVoxelizer::State {
         return found;
     }
 
+    /// Whether a rule is for a single part of one material.
+    bool is_lone() const {
+        return has_rule && !has_materials && parts.size() == 1 && objects == 1 && parts[0].kind == PartKind::mesh;
+    }
+
     /// The voxels of a block by the rule.
     SparseVoxels ruled(const ColumnBlock& block, std::vector<ObjectTally>& tallies) {
         std::vector<TileResult> found = results(occupied(block), tallies);
-        if (!has_rule)
+        if (!has_rule || (is_lone() && thin == Thin::drop))
             return gathered(std::move(found));
         RuleFindings findings;
         auto take_findings = [&](std::vector<TileResult>& from) {
@@ -225,11 +233,18 @@ struct BlockVoxelizer::State {
         SparseVoxels voxels = gathered(std::move(found));
         const TileRange range = tiles_of(block);
         const auto brick = [](int tile) { return uint32_t(tile) * kTileBricks; };
+        const BrickArea area{brick(range.x0), brick(range.x1 + 1), brick(range.y0), brick(range.y1 + 1)};
+        if (is_lone()) {
+            const uint8_t material = parts[0].material != 0 ? parts[0].material : parts[0].mesh->materials[0];
+            tallies[0].voxels += add_thin_parts(voxels, beside.empty() ? voxels : around, std::move(findings.bricks),
+                                                area, material, workers);
+            seconds.fill += lap();
+            return voxels;
+        }
         std::vector<int64_t> lost(objects, 0);
         const TileAreas tiles(parts, bins, side);
         apply_rule(
-            voxels, beside.empty() ? voxels : around, std::move(findings),
-            {brick(range.x0), brick(range.x1 + 1), brick(range.y0), brick(range.y1 + 1)}, thin,
+            voxels, beside.empty() ? voxels : around, std::move(findings), area, thin,
             [&](std::span<const uint64_t> codes) { return find_areas(tiles, bins.tiles_per_side, codes, workers); },
             lost, workers);
         for (size_t i = 0; i < objects; ++i)

@@ -1,0 +1,109 @@
+// What a rule other than `touch` fills of one tile where a single part of one material is all there is: then the tile's
+// voxels are those that are filled, and neither sums over parts nor materials are asked for.
+#pragma once
+
+#include "../rules/thin_voxels.h"
+#include "rule_tile.h"
+
+#include <cmath>
+#include <vector>
+
+namespace voxrt::voxelize {
+
+class LoneRule {
+public:
+    /// `thin`: whether bricks are listed, too.
+    LoneRule(Rule rule, Thin thin) : rule_(rule), lists_(thin == Thin::keep) {}
+
+    /// Empties it for the tile at (tile_x, tile_y), in tiles, which lists some triangles of the part.
+    void clear(int tile_x, int tile_y, size_t triangles) {
+        tile_x_ = tile_x;
+        tile_y_ = tile_y;
+        error_ = error_of_volumes(double(triangles));
+        bricks_.clear();
+        doubts_.clear();
+    }
+
+    bool asks_for_volumes() const { return rule_ == Rule::half; }
+
+    /// Where the volumes of a brick are to be written, by slice and bit, before it is added.
+    std::array<double, kBrickVoxels>& volumes() { return volumes_; }
+
+    /// Fills those of some voxels whose volumes are a half or more.
+    void fill_halves(int column, int k, const Slices& voxels, const Slices& touched, Slices& filled) {
+        Slices near{};
+        for (int z = 0; z < kBrickSide; ++z)
+            for (uint64_t left = voxels[z] & ~filled[z]; left != 0; left &= left - 1) {
+                const int bit = std::countr_zero(left);
+                const double over = volumes_[size_t(z * 64 + bit)] - 0.5;
+                filled[z] |= uint64_t{over >= error_} << bit;
+                near[z] |= uint64_t{std::abs(over) < error_} << bit;
+            }
+        if (is_empty(near))
+            return;
+        doubts_.push_back({bricks_.size(), column, k, near});
+        if (!lists_)
+            list(column, k, touched, filled);
+    }
+
+    /// Adds a brick with voxels that are touched, some of which are filled.
+    void add(int column, int k, const Slices& touched, const Slices& filled) {
+        if (lists_)
+            list(column, k, touched, filled);
+    }
+
+    /// The voxels that volumes do not decide. They stand in bricks().
+    const std::vector<HalfDoubt>& doubts() const { return doubts_; }
+    std::vector<RuleBrick>& bricks() { return bricks_; }
+    double error_bound() const { return error_; }
+    template <class Take> void for_each_summand(const HalfDoubt&, int, int, Take take) const { take(0); }
+
+    /// Marks the bricks that are thick whatever other tiles hold, and appends all. `tile`: what is filled.
+    void take_bricks(const TileVoxels& tile, std::vector<RuleBrick>& out) {
+        if (!lists_)
+            return;
+        static constexpr Slices none{};
+        static constexpr Slices all = [] {
+            Slices s{};
+            s.fill(~uint64_t{0});
+            return s;
+        }();
+        for (RuleBrick& brick : bricks_) {
+            const int x = int(gather_bits(brick.code)) - tile_x_ * kTileBricks;
+            const int y = int(gather_bits(brick.code >> 1)) - tile_y_ * kTileBricks, z = int(gather_bits(brick.code >> 2));
+            brick.is_thick = is_empty(thin_voxels(brick, [&](uint32_t wanted) {
+                std::array<const Slices*, 27> around;
+                around.fill(&none);
+                for (; wanted != 0; wanted &= wanted - 1) {
+                    const int n = std::countr_zero(wanted);
+                    const int u = x + n % 3 - 1, v = y + n / 3 % 3 - 1, k = z + n / 9 - 1;
+                    if (u < 0 || v < 0 || k < 0 || u >= kTileBricks || v >= kTileBricks || k >= tile.height())
+                        continue;
+                    const uint32_t slot = *tile.slots(v * kTileBricks + u, k);
+                    around[size_t(n)] = slot == 0                        ? &none
+                                        : slot < TileVoxels::kFirstBrick ? &all
+                                                                         : &tile.brick(slot).mask;
+                }
+                return around;
+            }));
+        }
+        out.assign(bricks_.begin(), bricks_.end());
+    }
+
+private:
+    void list(int column, int k, const Slices& touched, const Slices& filled) {
+        const uint64_t code = morton(uint32_t(tile_x_ * kTileBricks + column % kTileBricks),
+                                     uint32_t(tile_y_ * kTileBricks + column / kTileBricks), uint32_t(k));
+        bricks_.push_back({code, touched, filled, {}});
+    }
+
+    Rule rule_;
+    bool lists_;
+    double error_ = 0;
+    std::array<double, kBrickVoxels> volumes_;
+    std::vector<RuleBrick> bricks_;
+    std::vector<HalfDoubt> doubts_;
+    int tile_x_ = 0, tile_y_ = 0; // in tiles
+};
+
+} // namespace voxrt::voxelize
