@@ -13,9 +13,10 @@ void TileSurface::cross_row(int group, int y, int k, ColumnBytes crossed, bool e
     add_crossings(at((y >> kBrickBits) * kTileBricks + group, k), y & (kBrickSide - 1), crossed, enters);
 }
 
-void TileSurface::hold_in_tile(int x, int y, int z) {
+void TileSurface::hold_in_tile(int x, int y, int z, bool on) {
     const int column = (y >> kBrickBits) * kTileBricks + (x >> kBrickBits);
-    row_of(at(column, z >> kBrickBits).held)[z & (kBrickSide - 1)] |= uint64_t{1} << column_bit(x, y);
+    ShellBrick& brick = at(column, z >> kBrickBits);
+    row_of(on ? brick.on : brick.held)[z & (kBrickSide - 1)] |= uint64_t{1} << column_bit(x, y);
 }
 
 void TileSurface::add_pieces(const ColumnPieces& columns, int count, int from, int to) {
@@ -24,11 +25,15 @@ void TileSurface::add_pieces(const ColumnPieces& columns, int count, int from, i
         const int column = (y >> kBrickBits) * kTileBricks + (x >> kBrickBits), bit = column_bit(x, y);
         for (int z = columns.z[i] + from, level = 0; z < end;) {
             const int slice = z & (kBrickSide - 1), count_here = std::min(end - z, kBrickSide - slice);
-            double* at = pieces_at(column, z >> kBrickBits).slices(slice, slice + count_here) + bit;
-            for (z += count_here; level < z - columns.z[i] - from; ++level, at += 64) {
+            ShellBrick& brick = this->at(column, z >> kBrickBits);
+            if (notes_asked_)
+                for (uint64_t *row = &row_of(brick.asked)[size_t(slice)], *last = row + count_here; row != last; ++row)
+                    *row |= uint64_t{1} << bit;
+            double* at = pieces_of(brick).column(bit) + slice;
+            for (z += count_here; level < z - columns.z[i] - from; ++level, ++at) {
                 const double volume = columns.volumes[level][i];
                 at[0] += volume;
-                at[64] += columns.areas[level][i] - volume;
+                at[1] += columns.areas[level][i] - volume;
             }
         }
     }

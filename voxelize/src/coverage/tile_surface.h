@@ -28,6 +28,8 @@ struct ShellBrick {
     uint32_t cells = kNone;       // row of materials where the shell has several
     uint32_t transparent = kNone; // row of voxels with fully transparent surface, where there is some
     uint32_t held = kNone;        // row of voxels that the surface fills under every rule, where there are some
+    uint32_t on = kNone;          // row of voxels whose centre lies on a triangle, where volumes may decide instead
+    uint32_t asked = kNone;       // row of voxels whose volumes are found, where not all are
     uint32_t mixed = kNone;       // row of voxels with surface of another material, where this is wanted
     uint32_t pieces = kNone;      // row of what triangles add to volumes, where it is wanted
     uint8_t material = 0;         // the shell's only material, else 0
@@ -36,26 +38,28 @@ struct ShellBrick {
     bool has_shell() const { return material != 0 || cells != kNone; }
 };
 
-/// What the triangles of a brick add to the volume of a voxel and of all above, by slice and bit; the last slice is the
-/// lowest of the brick above.
+/// What the triangles of a brick add to the volume of a voxel and of all above, by column and slice; the last slice is
+/// the lowest of the brick above.
 class VolumePieces {
 public:
-    VolumePieces() : begun_(0) {} // no memory is written of slices without pieces
+    VolumePieces() : columns_(0) {} // no memory is written of columns without pieces
 
-    /// Slices from … to, to be added to.
-    double* slices(int from, int to) {
-        for (uint32_t fresh = ((2u << to) - (1u << from)) & ~begun_; fresh != 0; fresh &= fresh - 1) {
-            std::fill_n(&values_[size_t(64 * std::countr_zero(fresh))], 64, 0.0);
-            begun_ |= fresh & (~fresh + 1);
-        }
-        return &values_[size_t(64 * from)];
+    /// A column's slices, to be added to.
+    double* column(int bit) {
+        double* const slices = &values_[size_t(bit * kSlices)];
+        if ((columns_ >> bit & 1) == 0)
+            std::fill_n(slices, kSlices, 0.0);
+        columns_ |= uint64_t{1} << bit;
+        return slices;
     }
-    /// Null where nothing is added.
-    const double* slice(int z) const { return begun_ >> z & 1 ? &values_[size_t(64 * z)] : nullptr; }
+    /// The columns with pieces.
+    uint64_t columns() const { return columns_; }
+    double at(int bit, int z) const { return values_[size_t(bit * kSlices + z)]; }
 
 private:
-    uint32_t begun_; // slices, by bit
-    std::array<double, kBrickVoxels + 64> values_;
+    static constexpr int kSlices = kBrickSide + 1;
+    uint64_t columns_; // by bit
+    std::array<double, size_t{64} * kSlices> values_;
 };
 
 /// A crossing whose bit is already set.
@@ -149,8 +153,8 @@ public:
         for (int z = lo; z <= hi; ++z)
             hold_in_tile(x - x_, y - y_, z);
     }
-    /// The same for a voxel; x and y from the tile's lowest column.
-    void hold_in_tile(int x, int y, int z);
+    /// The same for a voxel; x and y from the tile's lowest column. `on`: it goes to on_centres().
+    void hold_in_tile(int x, int y, int z, bool on = false);
 
     /// Receives from cover_triangle that the ray of column (x, y) crosses the surface at voxel z.
     void cross(int x, int y, int z, bool enters) {
@@ -159,12 +163,23 @@ public:
                       uint64_t{1} << (at_column.shift + (z & (kBrickSide - 1))), enters);
     }
 
-    /// Receives from add_pieces what a triangle adds to the volume of voxel z, and to each above.
+    /// Voxels lo … hi of column (x, y) may get pieces.
+    void ask(int x, int y, int lo, int hi) {
+        for (int z = lo; z <= hi; ++z)
+            row_of(at(locate(x, y).column, z >> kBrickBits).asked)[z & (kBrickSide - 1)] |=
+                uint64_t{1} << column_bit(x - x_, y - y_);
+    }
+
+    /// Receives from add_pieces which columns have pieces.
+    bool wants(int) const { return true; }
+    bool wants(int, int) const { return true; }
+    void begin_column(int, int, int, int) {}
+    /// The same for what a triangle adds to the volume of voxel z, and to each above.
     void add_piece(int x, int y, int z, double area, double volume) {
         const int slice = z & (kBrickSide - 1), bit = column_bit(x - x_, y - y_);
-        double* const slices = pieces_at(locate(x, y).column, z >> kBrickBits).slices(slice, slice + 1);
-        slices[bit] += volume;
-        slices[bit + 64] += area - volume;
+        double* const slices = pieces_at(locate(x, y).column, z >> kBrickBits).column(bit) + slice;
+        slices[0] += volume;
+        slices[1] += area - volume;
     }
 
     /// The same for voxels z + from … z + to - 1 of the first `count` columns. In a file of its own, as add_row_slowly.
@@ -223,19 +238,28 @@ public:
     /// The voxels of a brick that hold() has received.
     Slices held(const ShellBrick& brick) const { return brick.held == kNone ? Slices{} : rows_[brick.held]; }
 
+    /// The voxels of a brick whose centres lie on triangles that are in sheets.
+    Slices on_centres(const ShellBrick& brick) const { return brick.on == kNone ? Slices{} : rows_[brick.on]; }
+
+    /// The voxels of a brick that have got pieces, and those that may get none where others do.
+    Slices asked(const ShellBrick& brick) const { return brick.asked == kNone ? Slices{} : rows_[brick.asked]; }
+
+    /// Whether it is noted which voxels get pieces.
+    void note_asked(bool noted) { notes_asked_ = noted; }
+
     /// The voxels of a brick with surface of several materials.
     Slices mixed(const ShellBrick& brick) const { return brick.mixed == kNone ? Slices{} : rows_[brick.mixed]; }
 
 private:
-    /// The pieces of a brick, made where there is none.
-    VolumePieces& pieces_at(int column, int k) {
-        ShellBrick& brick = at(column, k);
+    /// The pieces of a brick, made where there are none.
+    VolumePieces& pieces_of(ShellBrick& brick) {
         if (brick.pieces == kNone) {
             brick.pieces = uint32_t(pieces_.size());
             pieces_.emplace_back();
         }
         return pieces_[brick.pieces];
     }
+    VolumePieces& pieces_at(int column, int k) { return pieces_of(at(column, k)); }
 
     Slices& row_of(uint32_t& row) {
         if (row == kNone) {
@@ -309,7 +333,7 @@ private:
     int side_, height_;
     int x_ = 0, y_ = 0;
     uint8_t material_ = 0;
-    bool notes_mixed_ = false;
+    bool notes_mixed_ = false, notes_asked_ = false;
     std::vector<uint32_t> table_;
     std::vector<ShellBrick> bricks_;
     std::vector<uint32_t> slots_;

@@ -60,14 +60,14 @@ const std::vector<CoverageEngine>& coverage_engines() {
         std::vector<CoverageEngine> found;
 #if defined(__x86_64__)
         if (has_avx512())
-            found.push_back({"avx512", cover_by_vectors_avx512});
+            found.push_back(kAvx512Coverage);
         if (has_avx2())
-            found.push_back({"avx2", cover_by_vectors_avx2});
+            found.push_back(kAvx2Coverage);
 #endif
 #if defined(__wasm__)
-        found.push_back({"portable", nullptr});
+        found.push_back({"portable", nullptr, nullptr, nullptr});
 #else
-        found.push_back({"portable", cover_by_vectors_portable});
+        found.push_back(kPortableCoverage);
 #endif
         return found;
     }();

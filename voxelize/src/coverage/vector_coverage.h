@@ -3,6 +3,7 @@
 // vector_coverage_body.h is compiled once per instruction set. All give the same voxels.
 #pragma once
 
+#include "column_sheets.h"
 #include "tile_surface.h"
 
 namespace voxrt::voxelize {
@@ -22,32 +23,44 @@ inline bool is_upright(const Vertex& a, const Vertex& b, const Vertex& c) {
     return (int64_t{b.x} - a.x) * (int64_t{c.y} - a.y) == (int64_t{b.y} - a.y) * (int64_t{c.x} - a.x);
 }
 
+/// Whether a triangle that is not upright faces downwards.
+inline bool faces_down(const Vertex& a, const Vertex& b, const Vertex& c) {
+    return (int64_t{b.x} - a.x) * (int64_t{c.y} - a.y) < (int64_t{b.y} - a.y) * (int64_t{c.x} - a.x);
+}
+
 /// What is wanted beside the voxels that a triangle covers.
 struct Wanted {
     bool crosses = false; // which columns it crosses
     bool centres = false; // at their centres (centre_crossings.h). Not of upright triangles
     bool holds = false;   // which centres lie on it, with `centres`
     bool pieces = false;  // its pieces
+    ColumnSheets* sheets = nullptr; // takes it into its sheet, with `crosses` and `centres`
 };
 
 /// Adds to a surface what triangle abc covers of the surface's tile, and what else is wanted. `window`: the tile's.
 /// The engine of the page has none: compiled to WebAssembly, eight at once take twice the time of one after the other.
 using CoverByVectors = void (*)(const Vertex& a, const Vertex& b, const Vertex& c, const Window& window,
                                 const Wanted& wanted, TileSurface& surface);
-void cover_by_vectors_portable(const Vertex& a, const Vertex& b, const Vertex& c, const Window& window,
-                               const Wanted& wanted, TileSurface& surface);
-#if defined(__x86_64__)
-void cover_by_vectors_avx2(const Vertex& a, const Vertex& b, const Vertex& c, const Window& window,
-                           const Wanted& wanted, TileSurface& surface);
-void cover_by_vectors_avx512(const Vertex& a, const Vertex& b, const Vertex& c, const Window& window,
-                             const Wanted& wanted, TileSurface& surface);
-#endif
 
-/// The instruction sets that this processor has, the fastest first.
+/// Finds which columns need volumes. `top`: the grid's last voxel along z.
+using FindNeeded = void (*)(ColumnSheets& sheets, int top);
+
+/// Adds the pieces of triangle abc in the columns of its sheet that need volumes. It fits_pieces() and is not upright.
+using AddNeededPieces = void (*)(const Vertex& a, const Vertex& b, const Vertex& c, const Window& window,
+                                 const ColumnSheets& sheets, TileSurface& surface);
+
 struct CoverageEngine {
     const char* instructions;
     CoverByVectors cover_by_vectors;
+    FindNeeded find_needed;
+    AddNeededPieces add_needed_pieces;
 };
+extern const CoverageEngine kPortableCoverage;
+#if defined(__x86_64__)
+extern const CoverageEngine kAvx2Coverage, kAvx512Coverage;
+#endif
+
+/// The instruction sets that this processor has, the fastest first.
 const std::vector<CoverageEngine>& coverage_engines();
 
 } // namespace voxrt::voxelize

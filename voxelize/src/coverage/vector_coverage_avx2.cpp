@@ -1,2 +1,3 @@
-#define VOXRT_COVER_BY_VECTORS cover_by_vectors_avx2
+#define VOXRT_COVERAGE kAvx2Coverage
+#define VOXRT_INSTRUCTIONS "avx2"
 #include "vector_coverage_body.h"

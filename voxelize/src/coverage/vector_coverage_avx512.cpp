@@ -1,2 +1,3 @@
-#define VOXRT_COVER_BY_VECTORS cover_by_vectors_avx512
+#define VOXRT_COVERAGE kAvx512Coverage
+#define VOXRT_INSTRUCTIONS "avx512"
 #include "vector_coverage_body.h"

@@ -1,5 +1,5 @@
-// vector_coverage.h's cover_by_vectors for the instruction set of the including file, which defines
-// VOXRT_COVER_BY_VECTORS as its name.
+// vector_coverage.h's CoverageEngine for the instruction set of the including file, which defines VOXRT_COVERAGE as its
+// name, and VOXRT_INSTRUCTIONS as that of the set.
 //
 // The tests are those of triangle_coverage.h. Coordinates are whole and below 2^25, so products of two are exact in
 // doubles, multiples of 1/4 too. A quotient is the nearest whole number to a product with a reciprocal: that product's
@@ -17,6 +17,9 @@
 
 namespace voxrt::voxelize {
 namespace {
+
+// Heights of sheets are wrong by rounding, in voxels per slope: below 2^17 voxels, with errors of a few 2^-53.
+constexpr double kSheetError = 0x1p-30;
 
 // Where the rays of columns are in their voxels.
 constexpr double kSample = (kUnit + 1) / 2.0, kCentre = kUnit / 2.0;
@@ -103,8 +106,9 @@ struct Extents {
     }
 };
 
-// The rows of a triangle in a window: which columns it may cover, and whose rays it crosses; where it is along z.
-struct Rows {
+// The rows of a triangle in a window: which columns it may cover, and whose rays it crosses; where it is along z, if
+// this is wanted.
+template <bool along_z> struct Rows {
     Extents z;
     alignas(32) int32_t from[kTileSide + kLanes], to[kTileSide + kLanes]; // columns
     alignas(32) int32_t crossed_from[kTileSide + kLanes], crossed_to[kTileSide + kLanes];
@@ -118,33 +122,42 @@ struct Rows {
             EightExtents eight_x, eight_z, eight_ends;
             for (const Edge& edge : edges) {
                 const Lanes along = edge.to_planes(planes);
-                const Passing across(edge, t.x), upwards(edge, t.z);
+                const Passing across(edge, t.x);
                 eight_x.extend(across.upper(along), across.lower(along));
-                eight_z.extend(upwards.upper(along), upwards.lower(along));
+                if constexpr (along_z) {
+                    const Passing upwards(edge, t.z);
+                    eight_z.extend(upwards.upper(along), upwards.lower(along));
+                }
                 if (crosses) {
                     const Lanes beyond = across.first_ray_beyond(edge.to_planes(rays), ray);
                     eight_ends.extend(beyond, beyond);
                 }
             }
             x.set(base, eight_x);
-            z.set(base, eight_z);
+            if constexpr (along_z)
+                z.set(base, eight_z);
             ends.set(base, eight_ends);
         }
         x.join(count);
-        z.join(count);
+        if constexpr (along_z)
+            z.join(count);
         for (int i = 0; i < 3; ++i) {
             x.extend(y0, count, t.y[i], t.x[i]);
-            z.extend(y0, count, t.y[i], t.z[i]);
+            if constexpr (along_z)
+                z.extend(y0, count, t.y[i], t.z[i]);
         }
         const Lanes bottom = all(t.bottom), one = all(1);
         for (int base = 0; base < count; base += kLanes) {
-            const EightExtents eight_x = x.at(base), eight_z = z.at(base), eight_ends = ends.at(base);
+            const EightExtents eight_x = x.at(base), eight_ends = ends.at(base);
             const Lanes first = larger(eight_x.lo, all(x0)), last = smaller(eight_x.hi, all(x1));
             store_as_int(from + base, first);
             store_as_int(to + base, last);
             store_as_int(crossed_from + base, larger(eight_ends.lo, first));
             store_as_int(crossed_to + base, smaller(eight_ends.hi - one, last));
-            z.set(base, {eight_z.lo + bottom, smaller(eight_z.hi + bottom, all(top))});
+            if constexpr (along_z) {
+                const EightExtents eight_z = z.at(base);
+                z.set(base, {eight_z.lo + bottom, smaller(eight_z.hi + bottom, all(top))});
+            }
         }
     }
 };
@@ -203,11 +216,37 @@ struct Area {
     int x0, x1, y0, y1, top;
 };
 
+// Notes that a triangle covers and crosses columns of a row. Returns those that its sheet had before.
+inline uint64_t extend_row(ColumnSheets& sheets, bool enters, int y, uint64_t covered, uint64_t crossed) {
+    const auto row = static_cast<size_t>(y);
+    const uint64_t before = sheets.covered[enters][row];
+    sheets.several[enters][row] |= before & covered;
+    sheets.covered[enters][row] = before | covered;
+    sheets.again[enters][row] |= sheets.crossed[enters][row] & crossed;
+    sheets.crossed[enters][row] |= crossed;
+    return before;
+}
+
+// Takes the heights of a triangle's plane in eight columns into its sheet. `heights`: at the columns' centres;
+// `before`: which columns had some; slopes: half of z per x, and per y.
+inline void extend_group(ColumnSheets& sheets, bool enters, int place, uint64_t covered, uint64_t before,
+                         const Lanes& heights, double half_slope_x, double half_slope_y) {
+    const auto had = static_cast<Mask>(before & covered), has = static_cast<Mask>(covered);
+    for (int corner = 0; corner < 4; ++corner) {
+        const Lanes height = heights + all((corner % 2 == 0 ? -half_slope_x : half_slope_x) +
+                                           (corner < 2 ? -half_slope_y : half_slope_y));
+        double *const low = &sheets.low[enters][corner][place], *const high = &sheets.high[enters][corner][place];
+        const Lanes old_low = load(low), old_high = load(high);
+        store(low, choose(has, choose(had, smaller(height, old_low), height), old_low));
+        store(high, choose(has, choose(had, larger(height, old_high), height), old_high));
+    }
+}
+
 template <class Wide, class Rest, bool centres>
 inline void cover_area(const Corners& t, const Area& area, const Wanted& wanted, Pieces* pieces, TileSurface& surface) {
     const auto [x0, x1, y0, y1, top] = area;
     const int first_group = x0 / kLanes, first_column = first_group * kLanes;
-    const Rows rows(t, y0, y1 - y0 + 1, x0, x1, top, wanted.crosses, centres ? kCentre : kSample);
+    const Rows<true> rows(t, y0, y1 - y0 + 1, x0, x1, top, wanted.crosses, centres ? kCentre : kSample);
     Extents columns;
     find_columns(t, first_column, x1 - first_column + 1, columns);
     PlaneRows<Wide, Rest> plane(t, first_column, y0);
@@ -220,6 +259,8 @@ inline void cover_area(const Corners& t, const Area& area, const Wanted& wanted,
                   last_brick = (highest + (centres && highest < top)) >> kBrickBits;
         const uint64_t covered = bits_between(from, to);
         const uint64_t crossed = bits_between(rows.crossed_from[row], rows.crossed_to[row]);
+        const uint64_t before =
+            centres && wanted.sheets != nullptr ? extend_row(*wanted.sheets, plane.enters(), y, covered, crossed) : 0;
         plane.begin_row();
         for (int group = first_group; group <= to / kLanes; ++group, plane.end_group()) {
             const ColumnBytes inside = kWholeBytes[covered >> group * kLanes & 0xFF];
@@ -234,14 +275,19 @@ inline void cover_area(const Corners& t, const Area& area, const Wanted& wanted,
             alignas(32) int32_t lo[kLanes], hi[kLanes], above[kLanes];
             if constexpr (centres) {
                 Mask on;
-                const Lanes below = smaller(larger(plane.centres(on), all(-kBeyond)), all(kBeyond));
+                Lanes heights;
+                const Lanes below = smaller(larger(plane.centres(on, heights), all(-kBeyond)), all(kBeyond));
+                if (wanted.sheets != nullptr)
+                    extend_group(*wanted.sheets, plane.enters(), y * kTileSide + group * kLanes,
+                                 covered >> group * kLanes & 0xFF, before >> group * kLanes & 0xFF, heights,
+                                 plane.slope_x() / 2, plane.slope_y() / 2);
                 store_as_int(above, if_less(below, all(top), below + all(1), all(kBeyond)));
                 uint64_t held = wanted.holds ? on & (covered >> group * kLanes) : 0;
-                for (alignas(64) double heights[kLanes]; held != 0; held &= held - 1) {
-                    store(heights, below);
+                for (alignas(64) double voxels[kLanes]; held != 0; held &= held - 1) {
+                    store(voxels, below);
                     const int lane = __builtin_ctzll(held), x = group * kLanes + lane;
-                    if (heights[lane] <= top && is_over(t, x * kVoxel + kCentre, y * kVoxel + kCentre))
-                        surface.hold_in_tile(x, y, static_cast<int>(heights[lane]));
+                    if (voxels[lane] <= top && is_over(t, x * kVoxel + kCentre, y * kVoxel + kCentre))
+                        surface.hold_in_tile(x, y, static_cast<int>(voxels[lane]), wanted.sheets != nullptr);
                 }
             }
             store_as_int(lo, z.lo);
@@ -266,47 +312,176 @@ inline void cover_area(const Corners& t, const Area& area, const Wanted& wanted,
     }
 }
 
-} // namespace
+// Eight columns of a sheet.
+struct EightOfSheet {
+    Lanes middle, reach; // heights that may be doubtful are that far from the middle
+    Lanes bottom, top;   // one below where the sheet may be, and one above
 
-void VOXRT_COVER_BY_VECTORS(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w, const Wanted& wanted,
-                            TileSurface& surface) {
-    auto least = [](int32_t u, int32_t v, int32_t s) { return u < v ? (u < s ? u : s) : (v < s ? v : s); };
-    auto most = [](int32_t u, int32_t v, int32_t s) { return u > v ? (u > s ? u : s) : (v > s ? v : s); };
-    const int left = voxel_floor(least(a.x, b.x, c.x)) - w.x0, front = voxel_floor(least(a.y, b.y, c.y)) - w.y0;
-    const int right = voxel_below(most(a.x, b.x, c.x)) - w.x0, back = voxel_below(most(a.y, b.y, c.y)) - w.y0;
-    const int x0 = left > 0 ? left : 0, x1 = right < w.x1 - w.x0 ? right : w.x1 - w.x0;
-    const int y0 = front > 0 ? front : 0, y1 = back < w.y1 - w.y0 ? back : w.y1 - w.y0;
-    Corners t;
-    t.bottom = voxel_floor(least(a.z, b.z, c.z));
-    if (x0 > x1 || y0 > y1 || t.bottom > w.top)
-        return;
-    const Vertex* corners[3] = {&a, &b, &c};
-    for (int i = 0; i < 3; ++i) {
-        t.x[i] = static_cast<double>(corners[i]->x - w.x0 * kUnit);
-        t.y[i] = static_cast<double>(corners[i]->y - w.y0 * kUnit);
-        t.z[i] = static_cast<double>(corners[i]->z - t.bottom * kUnit);
+    EightOfSheet(const ColumnSheets& sheets, int sheet, int place) {
+        const auto low = [&](int corner) { return load(&sheets.low[sheet][corner][place]); };
+        const auto high = [&](int corner) { return load(&sheets.high[sheet][corner][place]); };
+        const Lanes from = smaller(low(0) + low(3), low(1) + low(2)), to = larger(high(0) + high(3), high(1) + high(2));
+        bottom = smaller(smaller(low(0), low(3)), smaller(low(1), low(2))) - all(1);
+        top = larger(larger(high(0), high(3)), larger(high(1), high(2))) + all(1);
+        middle = (from + to) * all(0.25);
+        reach = (to - from) * all(0.25) + (top - bottom) * all(kSheetError);
     }
-    const auto width = [](const double (&p)[3]) {
-        const double low = p[0] < p[1] ? (p[0] < p[2] ? p[0] : p[2]) : (p[1] < p[2] ? p[1] : p[2]);
-        const double high = p[0] > p[1] ? (p[0] > p[2] ? p[0] : p[2]) : (p[1] > p[2] ? p[1] : p[2]);
-        return high - low;
-    };
-    const Area area{x0, x1, y0, y1, w.top};
-    const bool narrow = width(t.x) < kNarrowExtent && width(t.y) < kNarrowExtent && width(t.z) < kNarrowExtent;
-    const auto cover = narrow && wanted.centres ? cover_area<int64_t, Lanes, true>
-                       : narrow                 ? cover_area<int64_t, Lanes, false>
-                       : wanted.centres         ? cover_area<int128, LongLanes, true>
-                                                : cover_area<int128, LongLanes, false>;
+    // Columns without a voxel whose centre may be within reach.
+    Mask decided() const {
+        const Lanes from = middle - nearest_whole(middle);
+        return less(reach, larger(from, all(0) - from));
+    }
+};
+
+void find_needed(ColumnSheets& sheets, int top) {
+    for (int y = 0; y < kTileSide; ++y) {
+        const auto row = static_cast<size_t>(y);
+        const uint64_t both = sheets.covered[0][row] & sheets.covered[1][row];
+        uint64_t doubtful = sheets.doubtful[row], needed[2] = {};
+        for (size_t sheet = 0; sheet < 2; ++sheet)
+            doubtful |= sheets.again[sheet][row] | (sheets.covered[sheet][row] & ~sheets.crossed[sheet][row]);
+        for (int group = 0; group < kTileSide / kLanes; ++group) {
+            const int shift = group * kLanes;
+            uint64_t wild = 0;
+            Lanes bottoms[2] = {all(0), all(0)}, tops[2] = {all(0), all(0)};
+            for (int sheet = 0; sheet < 2; ++sheet) {
+                const uint64_t covered = sheets.covered[sheet][row] >> shift & 0xFF;
+                if (covered == 0)
+                    continue;
+                const EightOfSheet eight(sheets, sheet, y * kTileSide + shift);
+                needed[sheet] |= (sheets.several[sheet][row] >> shift & 0xFF & ~uint64_t{eight.decided()}) << shift;
+                wild |= covered & less(all(top + 1.5 + 0x1p-10), eight.top);
+                bottoms[sheet] = eight.bottom;
+                tops[sheet] = eight.top;
+            }
+            if (const uint64_t here = both >> shift & 0xFF; here != 0)
+                wild |= here & ~uint64_t{static_cast<Mask>(less(tops[0], bottoms[1]) | less(tops[1], bottoms[0]))};
+            doubtful |= wild << shift;
+        }
+        sheets.doubtful[row] = doubtful;
+        for (size_t sheet = 0; sheet < 2; ++sheet)
+            sheets.needed[sheet][row] = needed[sheet] | doubtful;
+    }
+}
+
+// Whether rays upwards enter the solid.
+inline bool is_wound_clockwise(const Corners& t) {
+    return (t.x[1] - t.x[0]) * (t.y[2] - t.y[0]) < (t.y[1] - t.y[0]) * (t.x[2] - t.x[0]);
+}
+
+// Voxels from a triangle's lowest to its highest.
+inline int voxels_high(const Corners& t) {
+    double high = t.z[0];
+    for (int i = 1; i < 3; ++i)
+        high = t.z[i] > high ? t.z[i] : high;
+    return voxel_below(static_cast<int64_t>(high));
+}
+
+// A triangle in a window, and which part of the window may hold it.
+struct Placed {
+    Corners corners;
+    Area area;
+    bool is_outside, is_narrow;
+
+    Placed(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w) {
+        auto least = [](int32_t u, int32_t v, int32_t s) { return u < v ? (u < s ? u : s) : (v < s ? v : s); };
+        auto most = [](int32_t u, int32_t v, int32_t s) { return u > v ? (u > s ? u : s) : (v > s ? v : s); };
+        const int left = voxel_floor(least(a.x, b.x, c.x)) - w.x0, front = voxel_floor(least(a.y, b.y, c.y)) - w.y0;
+        const int right = voxel_below(most(a.x, b.x, c.x)) - w.x0, back = voxel_below(most(a.y, b.y, c.y)) - w.y0;
+        area = {left > 0 ? left : 0, right < w.x1 - w.x0 ? right : w.x1 - w.x0, front > 0 ? front : 0,
+                back < w.y1 - w.y0 ? back : w.y1 - w.y0, w.top};
+        Corners& t = corners;
+        t.bottom = voxel_floor(least(a.z, b.z, c.z));
+        is_outside = area.x0 > area.x1 || area.y0 > area.y1 || t.bottom > w.top;
+        if (is_outside)
+            return;
+        const Vertex* vertices[3] = {&a, &b, &c};
+        for (int i = 0; i < 3; ++i) {
+            t.x[i] = static_cast<double>(vertices[i]->x - w.x0 * kUnit);
+            t.y[i] = static_cast<double>(vertices[i]->y - w.y0 * kUnit);
+            t.z[i] = static_cast<double>(vertices[i]->z - t.bottom * kUnit);
+        }
+        const auto width = [](const double (&p)[3]) {
+            const double low = p[0] < p[1] ? (p[0] < p[2] ? p[0] : p[2]) : (p[1] < p[2] ? p[1] : p[2]);
+            const double high = p[0] > p[1] ? (p[0] > p[2] ? p[0] : p[2]) : (p[1] > p[2] ? p[1] : p[2]);
+            return high - low;
+        };
+        is_narrow = width(t.x) < kNarrowExtent && width(t.y) < kNarrowExtent && width(t.z) < kNarrowExtent;
+    }
+};
+
+Pieces pieces_of(const Placed& placed, const Vertex& a, const Vertex& b, const Vertex& c, TileSurface& surface) {
+    const double z[3] = {static_cast<double>(a.z), static_cast<double>(b.z), static_cast<double>(c.z)};
+    return Pieces(placed.corners.x, placed.corners.y, z, surface);
+}
+
+void cover_by_vectors(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w, const Wanted& wanted,
+                      TileSurface& surface) {
+    const Placed placed(a, b, c, w);
+    if (placed.is_outside)
+        return;
+    const auto cover = placed.is_narrow && wanted.centres ? cover_area<int64_t, Lanes, true>
+                       : placed.is_narrow                 ? cover_area<int64_t, Lanes, false>
+                       : wanted.centres                   ? cover_area<int128, LongLanes, true>
+                                                          : cover_area<int128, LongLanes, false>;
     if (!wanted.pieces) {
-        cover(t, area, wanted, nullptr, surface);
+        cover(placed.corners, placed.area, wanted, nullptr, surface);
         return;
     }
-    double z[3];
-    for (int i = 0; i < 3; ++i)
-        z[i] = corners[i]->z;
-    Pieces pieces(t.x, t.y, z, surface);
-    cover(t, area, wanted, &pieces, surface);
+    Pieces pieces = pieces_of(placed, a, b, c, surface);
+    cover(placed.corners, placed.area, wanted, &pieces, surface);
     pieces.finish();
 }
+
+void add_needed_pieces(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w, const ColumnSheets& sheets,
+                       TileSurface& surface) {
+    const Placed placed(a, b, c, w);
+    if (placed.is_outside)
+        return;
+    const auto [x0, x1, y0, y1, top] = placed.area;
+    const bool enters = is_wound_clockwise(placed.corners);
+    const ColumnSheets::Rows& needed = sheets.needed[enters];
+    const uint64_t columns = bits_between(x0, x1);
+    uint64_t any = 0;
+    for (int y = y0; y <= y1; ++y)
+        any |= needed[static_cast<size_t>(y)] & columns;
+    if (any == 0)
+        return;
+    const int first_group = x0 / kLanes;
+    const double low = placed.corners.bottom, high = placed.corners.bottom + voxels_high(placed.corners);
+    const Rows<false> rows(placed.corners, y0, y1 - y0 + 1, x0, x1, top, false, kCentre);
+    PlaneRows<int64_t, Lanes> plane(placed.corners, first_group * kLanes, y0);
+    Pieces pieces = pieces_of(placed, a, b, c, surface);
+    for (int y = y0; y <= y1; ++y, plane.end_row()) {
+        const int from = rows.from[y - y0], to = rows.to[y - y0];
+        const uint64_t left = needed[static_cast<size_t>(y)] & bits_between(from, to);
+        if (left == 0)
+            continue;
+        plane.begin_row();
+        for (int group = first_group; left >> group * kLanes != 0; ++group, plane.end_group()) {
+            const uint64_t here = left >> group * kLanes & 0xFF;
+            if (here == 0)
+                continue;
+            EightExtents z;
+            z.lo = all(low);
+            z.hi = all(high);
+            plane.narrow(z);
+            alignas(32) int32_t lo[kLanes], hi[kLanes];
+            alignas(64) double above_corners[kLanes];
+            z.lo = smaller(z.lo, all(kBeyond));
+            store_as_int(lo, z.lo);
+            store_as_int(hi, larger(z.hi, z.lo - all(1)));
+            store(above_corners, plane.above_corners(z.lo));
+            pieces.add_columns(here & ~uint64_t{less(z.hi, z.lo)}, group, y, lo, hi, above_corners);
+            if (group == kTileSide / kLanes - 1)
+                break;
+        }
+    }
+    pieces.finish();
+}
+
+} // namespace
+
+const CoverageEngine VOXRT_COVERAGE{VOXRT_INSTRUCTIONS, cover_by_vectors, find_needed, add_needed_pieces};
 
 } // namespace voxrt::voxelize

@@ -1,2 +1,3 @@
-#define VOXRT_COVER_BY_VECTORS cover_by_vectors_portable
+#define VOXRT_COVERAGE kPortableCoverage
+#define VOXRT_INSTRUCTIONS "portable"
 #include "vector_coverage_body.h"

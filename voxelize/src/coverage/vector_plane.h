@@ -128,6 +128,8 @@ public:
         height_ = height.whole;
         carry_ = unit_ - height.rest;
         per_unit_ = 1 / static_cast<double>(unit);
+        slope_x_ = -static_cast<double>(nx) / static_cast<double>(nz);
+        slope_y_ = -static_cast<double>(ny) / static_cast<double>(nz);
         corner_ = Quotients<Rest>(static_cast<Wide>((nx > 0 ? nx : 0) + (ny > 0 ? ny : 0)) * kUnit, unit);
         centre_ = Quotients<Rest>((spread - unit) / 2, unit);
         auto corner = [&](int64_t n, double at) { return static_cast<Wide>(n) * static_cast<int64_t>(at); };
@@ -157,10 +159,15 @@ public:
         z.hi = smaller(group_.whole + height_ + one_unless_less(group_.rest, carry_), z.hi);
     }
 
-    // The highest voxels of a group's columns whose centre is not above the plane. `on`: where it lies on the plane.
-    Lanes centres(Mask& on) const {
+    double slope_x() const { return slope_x_; }
+    double slope_y() const { return slope_y_; }
+
+    // The highest voxels of a group's columns whose centre is not above the plane. `on`: where it lies on the plane;
+    // `height`: that of the plane there, half a voxel less.
+    Lanes centres(Mask& on, Lanes& heights) const {
         Quotients<Rest> height = group_;
         height.add(centre_, unit_);
+        heights = height.whole + numbers(height.rest) * all(per_unit_);
         Rest one;
         set_all(one, 1);
         on = less(one_unless_less(height.rest, one), all(1));
@@ -177,6 +184,7 @@ public:
 private:
     bool enters_;
     double per_unit_;
+    double slope_x_ = 0, slope_y_ = 0; // z per x and y
     Rest unit_, carry_;      // carry_: which rest makes one more than height_
     Lanes height_;           // (spread - 1) / unit
     Quotients<Rest> corner_; // from where the plane is lowest in a column to the column's lowest corner

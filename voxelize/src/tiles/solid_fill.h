@@ -46,6 +46,9 @@ public:
         lone_ = lone;
     }
 
+    /// Which columns of a lone part need volumes; null where all do.
+    void use_sheets(const ColumnSheets* sheets) { sheets_ = sheets; }
+
     /// Claims the shell alone, which every rule fills.
     Claim claim_shell(TileVoxels& tile, TileSurface& object) {
         Claim result;
@@ -131,6 +134,7 @@ private:
         ColumnWinding winding;
         const int slices = std::min(object.side(), kBrickSide);
         const bool has_volumes = lone_ ? lone_->asks_for_volumes() : rule_ && rule_->asks_for_volumes();
+        const uint64_t doubtful = has_volumes && sheets_ ? columns_of(sheets_->doubtful, column) : ~uint64_t{0};
         uint64_t summed = 0; // columns whose volume is summed in below_: the last slice had surface there
         while (k < object.height()) {
             const ShellBrick* brick = object.find(column, k);
@@ -144,7 +148,13 @@ private:
             }
             Slices within{};
             const Slices shell = slices_of(brick->shell);
-            const Slices surface = has_volumes ? object.all_surface(*brick, shell) : Slices{};
+            Slices surface = has_volumes ? object.all_surface(*brick, shell) : Slices{};
+            if (has_volumes && sheets_) {
+                const Slices asked = object.asked(*brick);
+                for (int z = 0; z < kBrickSide; ++z)
+                    surface[z] = asked[z] | (surface[z] & doubtful);
+                summed_voxels_ = surface;
+            }
             const Crossings crossings(*brick);
             const uint32_t index = object.index_of(*brick);
             const VolumePieces* pieces = brick->pieces == kNone ? nullptr : &object.pieces(brick->pieces);
@@ -159,36 +169,48 @@ private:
                 advance(winding, crossings, index, brick->has_repeated, z);
                 within[z] = winding.inside();
                 result.note(winding, shell[z]);
-                add_volumes(pieces ? pieces->slice(z) : nullptr, surface[z], volumes, z);
+                add_volumes(pieces, surface[z], volumes, z);
             }
-            if (const double* carried = pieces ? pieces->slice(kBrickSide) : nullptr)
-                summed = carry_volumes(carried, summed, winding);
+            if (pieces)
+                summed = carry_volumes(*pieces, summed, winding);
             claim_brick(tile, object, column, k, *brick, within, interior, result);
             ++k;
         }
         result.simple = result.simple && winding.simple();
     }
 
+    /// The columns of a tile's rows that are in a brick column.
+    static uint64_t columns_of(const ColumnSheets::Rows& rows, int column) {
+        uint64_t found = 0;
+        for (int y = 0; y < kBrickSide; ++y)
+            found |= (rows[size_t(column / kTileBricks * kBrickSide + y)] >> column % kTileBricks * kBrickSide & 0xFF)
+                     << kBrickSide * y;
+        return found;
+    }
+
     /// Adds to `below_` what pieces of a brick add to the brick above. Returns the columns that are summed: those that
     /// were, and those where a flat piece lies between the bricks, whose surface begins above.
-    uint64_t carry_volumes(const double* carried, uint64_t summed, const ColumnWinding& winding) {
-        for (int bit = 0; bit < 64; ++bit) {
-            if (carried[bit] == 0)
+    uint64_t carry_volumes(const VolumePieces& pieces, uint64_t summed, const ColumnWinding& winding) {
+        for (uint64_t left = pieces.columns(); left != 0; left &= left - 1) {
+            const int bit = std::countr_zero(left);
+            const double carried = pieces.at(bit, kBrickSide);
+            if (carried == 0)
                 continue;
             if ((summed >> bit & 1) == 0)
                 below_[bit] = winding.at(bit);
-            below_[bit] += carried[bit];
+            below_[bit] += carried;
             summed |= uint64_t{1} << bit;
         }
         return summed;
     }
 
     /// Finds the volumes of the voxels of a slice that have surface.
-    void add_volumes(const double* pieces, uint64_t surface, std::array<double, kBrickVoxels>* volumes, int z) {
+    void add_volumes(const VolumePieces* pieces, uint64_t surface, std::array<double, kBrickVoxels>* volumes, int z) {
+        const uint64_t with_pieces = pieces ? pieces->columns() : 0;
         for (uint64_t left = surface; left != 0; left &= left - 1) {
             const int bit = std::countr_zero(left);
-            if (pieces)
-                below_[bit] += pieces[bit];
+            if (with_pieces >> bit & 1)
+                below_[bit] += pieces->at(bit, z);
             (*volumes)[size_t(z * 64 + bit)] = std::min(std::abs(below_[bit]), 1.0);
         }
     }
@@ -299,7 +321,7 @@ private:
         if (is_empty(mask))
             return;
         if (lone_) {
-            const Slices filled = lone_filled(column, k, shell, mask, hidden, within, object.held(brick));
+            const Slices filled = lone_filled(column, k, shell, mask, hidden, within, object, brick);
             if (!is_empty(filled))
                 result.voxels += tile.claim(column, k, filled, interior, nullptr);
             return;
@@ -324,13 +346,16 @@ private:
 
     /// What a lone part fills of a brick whose voxels `touched` it touches.
     Slices lone_filled(int column, int k, const Slices& shell, const Slices& touched, const Slices& hidden,
-                       const Slices& within, const Slices& held) {
+                       const Slices& within, const TileSurface& object, const ShellBrick& brick) {
+        const Slices held = object.held(brick), on = object.on_centres(brick);
         const bool by_volume = lone_->asks_for_volumes() && !is_capped_;
-        Slices filled;
-        for (int z = 0; z < kBrickSide; ++z)
-            filled[z] = ((by_volume ? hidden[z] : within[z]) | held[z]) & touched[z];
-        if (by_volume)
-            lone_->fill_halves(column, k, shell, touched, filled);
+        Slices filled, voxels;
+        for (int z = 0; z < kBrickSide; ++z) {
+            voxels[z] = !by_volume ? 0 : sheets_ ? shell[z] & summed_voxels_[z] : shell[z];
+            filled[z] = (hidden[z] | held[z] | ((within[z] | on[z]) & ~voxels[z])) & touched[z];
+        }
+        if (!is_empty(voxels))
+            lone_->fill_halves(column, k, voxels, touched, filled);
         lone_->add(column, k, touched, filled);
         return filled;
     }
@@ -363,6 +388,8 @@ private:
 
     RuleTile* rule_ = nullptr;
     LoneRule* lone_ = nullptr;
+    const ColumnSheets* sheets_ = nullptr;
+    Slices summed_voxels_{}; // of a brick, with sheets
     bool is_capped_ = false;
     std::array<double, 64> below_{}; // by column: the volume below the slice, per voxel
     std::vector<RepeatedCrossing> repeated_;

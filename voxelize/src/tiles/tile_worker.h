@@ -27,11 +27,14 @@ struct Scratch {
           object_voxels(objects, 0), shell_of_open(objects, 0), inside_of_open(objects, 0), overlaps_itself(parts, 0),
           positive(objects, 0), negative(objects, 0) {
         fill.use_rule(rule.get(), lone.get());
+        if (lone && lone->asks_for_volumes())
+            sheets = std::make_unique<ColumnSheets>();
     }
     TileSurface surface;
     TileVoxels tile;
     std::unique_ptr<RuleTile> rule; // these two are null where all parts have `touch`, or else one of them
     std::unique_ptr<LoneRule> lone;
+    std::unique_ptr<ColumnSheets> sheets; // where that one asks for volumes
     SolidFill fill;
     TileSorter sorter;
     std::vector<Vertex> vertices;
@@ -54,12 +57,30 @@ private:
     TileSurface& surface_;
 };
 
+/// Receiver of add_pieces that takes those in some columns, and notes which voxels have them.
+class NeededPieces {
+public:
+    NeededPieces(TileSurface& surface, const ColumnSheets::Rows& columns, const Window& window)
+        : surface_(surface), columns_(columns), window_(window) {}
+    bool wants(int y) const { return columns_[size_t(y - window_.y0)] != 0; }
+    bool wants(int x, int y) const { return columns_[size_t(y - window_.y0)] >> (x - window_.x0) & 1; }
+    void begin_column(int x, int y, int low, int high) {
+        surface_.ask(x, y, std::max(low - 1, 0), std::min(high + 1, window_.top));
+    }
+    void add_piece(int x, int y, int z, double area, double volume) { surface_.add_piece(x, y, z, area, volume); }
+
+private:
+    TileSurface& surface_;
+    const ColumnSheets::Rows& columns_;
+    const Window& window_;
+};
+
 class TileWorker : TileParts {
 public:
     /// `finds_volumes`: whether find_volumes() is called, or else work().
     TileWorker(const std::vector<PartView>& parts, const TriangleBins& bins, int side, const CoverageEngine& engine,
                bool finds_volumes)
-        : TileParts(parts, bins, side), cover_by_vectors_(engine.cover_by_vectors),
+        : TileParts(parts, bins, side), engine_(engine),
           piece_limit_(finds_volumes ? kFineLimit : kHalfLimit) {}
 
     /// `slot`: the place of `out` among the results of a block.
@@ -159,10 +180,18 @@ private:
         std::optional<CappedSurface> own;
         const CappedSurface* capped = capped_of(index, *vertices, own);
         s.seconds.holes += lap();
+        // Only of a closed surface it is known that each sheet has an inside and an outside.
+        ColumnSheets* sheets =
+            analysis.closed && capped == nullptr && engine_.find_needed != nullptr ? s.sheets.get() : nullptr;
+        s.fill.use_sheets(sheets);
+        if (sheets != nullptr)
+            sheets->clear();
+        s.surface.note_asked(sheets != nullptr);
         if (fills(part.fill))
-            cover<true>(part, analysis, capped, *vertices, triangles, window, part.rule != Rule::touch, s.surface);
+            cover<true>(part, analysis, capped, *vertices, triangles, window, part.rule != Rule::touch, sheets,
+                        s.surface);
         else
-            cover<false>(part, analysis, capped, *vertices, triangles, window, false, s.surface);
+            cover<false>(part, analysis, capped, *vertices, triangles, window, false, nullptr, s.surface);
         s.seconds.coverage += lap();
         const bool has_holes = capped != nullptr && !capped->cap_winding.empty();
         if (s.surface.empty() && !has_holes)
@@ -196,7 +225,7 @@ private:
     template <bool Cross>
     void cover(const PartView& part, const MeshAnalysis& analysis, const CappedSurface* capped,
                const std::vector<Vertex>& vertices, std::span<const BinnedTriangle> triangles, const Window& window,
-               bool has_rule, TileSurface& surface) const {
+               bool has_rule, ColumnSheets* sheets, TileSurface& surface) const {
         const MeshView& mesh = *part.mesh;
         surface.set_material(part.material);
         const Orientation* orientation = analysis.orientation.get();
@@ -226,7 +255,7 @@ private:
                 else
                     cover_triangle<false>(a, b, c, window, analysis.inverted, receiver);
             };
-            const bool by_vectors = cover_by_vectors_ != nullptr &&
+            const bool by_vectors = engine_.cover_by_vectors != nullptr &&
                                     (part.material != 0 || !mesh.rasters.has_raster(t)) && fits_vectors(a, b, c);
             Wanted wanted{counts && Cross && !has_rule};
             if (Cross && has_rule) {
@@ -236,19 +265,26 @@ private:
                 } else {
                     const bool by_volume = part.rule == Rule::half && !has_caps;
                     const bool crosses = counts && !has_caps;
+                    const bool has_sheets = sheets != nullptr && counts;
                     if (by_vectors && !is_upright(a, b, c))
-                        wanted = {crosses, true, !by_volume};
+                        wanted = {crosses, true, !by_volume || has_sheets};
                     else if (crosses || !by_volume)
                         find_centres(a, b, c, window, crosses, !by_volume, surface);
+                    if (has_sheets) {
+                        if (wanted.centres)
+                            wanted.sheets = sheets;
+                        else
+                            doubt_columns(a, b, c, window, *sheets);
+                    }
                     if (counts && has_caps)
                         cross_triangle(a, b, c, window, surface);
-                    wanted.pieces = counts && by_volume && by_vectors && fits_pieces(a, b, c, window.top, piece_limit_);
-                    if (counts && by_volume && !wanted.pieces)
+                    wanted.pieces = sheets == nullptr && counts && by_volume && by_vectors && fits_pieces(a, b, c, window.top, piece_limit_);
+                    if (sheets == nullptr && counts && by_volume && !wanted.pieces)
                         add_pieces(a, b, c, window, surface);
                 }
             }
             if (by_vectors) {
-                cover_by_vectors_(a, b, c, window, wanted, surface);
+                engine_.cover_by_vectors(a, b, c, window, wanted, surface);
             } else if (part.material != 0 || !mesh.rasters.has_raster(t)) {
                 cover_with(surface);
             } else {
@@ -257,6 +293,44 @@ private:
                 cover_with(rastered);
             }
         };
+        for_each_triangle(mesh, capped, vertices, triangles, window, add, add_cap);
+        if (sheets == nullptr)
+            return;
+        engine_.find_needed(*sheets, window.top);
+        for_each_triangle(mesh, capped, vertices, triangles, window, [&](size_t t) {
+            if (analysis.is_covered(mesh, t) || (orientation != nullptr && orientation->is_uncounted(t)))
+                return;
+            const int32_t* corner = mesh.triangles.data() + 3 * t;
+            const bool reversed = orientation != nullptr && orientation->is_reversed(t);
+            const Vertex &a = vertices[corner[0]], &b = vertices[corner[reversed ? 2 : 1]],
+                         &c = vertices[corner[reversed ? 1 : 2]];
+            if (is_upright(a, b, c))
+                return;
+            NeededPieces needed(surface, sheets->needed[faces_down(a, b, c)], window);
+            if (fits_vectors(a, b, c) && fits_pieces(a, b, c, window.top, piece_limit_))
+                engine_.add_needed_pieces(a, b, c, window, *sheets, surface);
+            else
+                add_pieces(a, b, c, window, needed);
+        }, [](size_t) {});
+    }
+
+    /// Marks all columns that a triangle may cover.
+    static void doubt_columns(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w,
+                              ColumnSheets& sheets) {
+        const auto [low_x, high_x] = std::minmax({a.x, b.x, c.x});
+        const auto [low_y, high_y] = std::minmax({a.y, b.y, c.y});
+        // One further at each side: a triangle in a plane between voxels counts for those beside it.
+        const int x0 = std::max(voxel_below(low_x), w.x0), x1 = std::min(voxel_floor(high_x), w.x1);
+        const int y0 = std::max(voxel_below(low_y), w.y0), y1 = std::min(voxel_floor(high_y), w.y1);
+        if (x0 <= x1 && y0 <= y1)
+            sheets.doubt(x0 - w.x0, x1 - w.x0, y0 - w.y0, y1 - w.y0);
+    }
+
+    /// Calls add(t) with the triangles of a tile, and add_cap(cap) with its caps.
+    template <class Add, class AddCap>
+    static void for_each_triangle(const MeshView& mesh, const CappedSurface* capped,
+                                  const std::vector<Vertex>& vertices, std::span<const BinnedTriangle> triangles,
+                                  const Window& window, const Add& add, const AddCap& add_cap) {
         if (triangles[0].triangle != kWholePart) {
             for (const BinnedTriangle& binned : triangles)
                 if (binned.triangle < mesh.triangle_count())
@@ -279,7 +353,7 @@ private:
         }
     }
 
-    CoverByVectors cover_by_vectors_;
+    CoverageEngine engine_;
     double piece_limit_;
 };
 
