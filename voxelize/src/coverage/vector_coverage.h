@@ -30,10 +30,10 @@ inline bool faces_down(const Vertex& a, const Vertex& b, const Vertex& c) {
 
 /// What is wanted beside the voxels that a triangle covers.
 struct Wanted {
-    bool crosses = false; // which columns it crosses
-    bool centres = false; // at their centres (centre_crossings.h). Not of upright triangles
-    bool holds = false;   // which centres lie on it, with `centres`
-    bool pieces = false;  // its pieces
+    bool crosses = false;           // which columns it crosses
+    bool centres = false;           // at their centres (centre_crossings.h). Not of upright triangles
+    bool holds = false;             // which centres lie on it, with `centres`
+    bool pieces = false;            // its pieces
     ColumnSheets* sheets = nullptr; // takes it into its sheet, with `crosses` and `centres`
 };
 

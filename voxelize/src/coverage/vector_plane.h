@@ -19,6 +19,11 @@ struct Corners {
     int bottom;
 };
 
+inline Lanes nearest_whole(const Lanes& v) {
+    const Lanes large = all(0x1.8p52);
+    return v + large - large;
+}
+
 // Intervals of eight slabs, or of eight planes between slabs.
 struct EightExtents {
     Lanes lo = all(kBeyond), hi = all(-kBeyond);
@@ -185,10 +190,10 @@ private:
     bool enters_;
     double per_unit_;
     double slope_x_ = 0, slope_y_ = 0; // z per x and y
-    Rest unit_, carry_;      // carry_: which rest makes one more than height_
-    Lanes height_;           // (spread - 1) / unit
-    Quotients<Rest> corner_; // from where the plane is lowest in a column to the column's lowest corner
-    Quotients<Rest> centre_; // and to its centre, less half a voxel
+    Rest unit_, carry_;                // carry_: which rest makes one more than height_
+    Lanes height_;                     // (spread - 1) / unit
+    Quotients<Rest> corner_;           // from where the plane is lowest in a column to the column's lowest corner
+    Quotients<Rest> centre_;           // and to its centre, less half a voxel
     Quotients<Rest> row_, next_row_, group_, next_group_;
 };
 

@@ -5,7 +5,8 @@
 
 namespace voxrt::voxelize {
 
-/// Adds an octant to sparse voxels, after all that lie before it. Eight equal octants in a row that share a parent become the parent.
+/// Adds an octant to sparse voxels, after all that lie before it. Eight equal octants in a row that share a parent
+/// become the parent.
 inline void push_octant(SparseVoxels& out, uint64_t code, uint8_t level, uint8_t material) {
     auto& codes = out.octant_codes;
     auto& levels = out.octant_levels;

@@ -1,6 +1,5 @@
 #include "rule_voxels.h"
 
-#include "../grid/push_octant.h"
 #include "brick_materials.h"
 #include "brick_window.h"
 #include "replaced_bricks.h"
@@ -11,21 +10,6 @@
 
 namespace voxrt::voxelize {
 namespace {
-
-bool is_in(const BrickArea& area, uint64_t code) {
-    const uint32_t x = gather_bits(code), y = gather_bits(code >> 1);
-    return x >= area.x0 && x < area.x1 && y >= area.y0 && y < area.y1;
-}
-
-/// Joins octants that make up a larger one.
-void join_octants(SparseVoxels& voxels) {
-    SparseVoxels joined;
-    for (size_t i = 0; i < voxels.octant_codes.size(); ++i)
-        push_octant(joined, voxels.octant_codes[i], voxels.octant_levels[i], voxels.octant_materials[i]);
-    voxels.octant_codes = std::move(joined.octant_codes);
-    voxels.octant_levels = std::move(joined.octant_levels);
-    voxels.octant_materials = std::move(joined.octant_materials);
-}
 
 class RuledVoxels {
 public:
@@ -62,7 +46,7 @@ public:
             return;
         std::vector<ContestedVoxels> found((bricks_.size() + kBricks - 1) / kBricks);
         for_each_brick(workers, [&](size_t i) {
-            if (is_in(area, bricks_[i].code))
+            if (area.holds(bricks_[i].code))
                 add_contested(i, found[i / kBricks]);
         });
         std::vector<uint64_t> codes;
@@ -85,7 +69,7 @@ public:
         std::vector<ReplacedBricks> found((bricks_.size() + kBricks - 1) / kBricks);
         for_each_brick(workers, [&](size_t i) {
             const RuleBrick& brick = bricks_[i];
-            if (!is_in(area, brick.code))
+            if (!area.holds(brick.code))
                 return;
             if (only_ == 0)
                 add_replaced(i, found[i / kBricks]);
@@ -108,9 +92,9 @@ public:
     void count_lost(const BrickArea& area, std::vector<int64_t>& lost) const {
         if (lost.size() == 1) // the owner of all
             for (size_t i = 0; i < bricks_.size(); ++i)
-                lost[0] += is_in(area, bricks_[i].code) ? count(bricks_[i].removed()) : 0;
+                lost[0] += area.holds(bricks_[i].code) ? count(bricks_[i].removed()) : 0;
         for (const OwnedSurface& part : owned_)
-            if (is_in(area, part.code))
+            if (area.holds(part.code))
                 lost[part.object] += count(without(part.voxels, bricks_[bricks_.find(part.code)].filled));
     }
 
@@ -396,28 +380,6 @@ void apply_rule(SparseVoxels& voxels, const SparseVoxels& around, RuleFindings f
     ruled.find_shown(area, find_areas, workers);
     ruled.count_lost(area, lost);
     replace_bricks(voxels, ruled.replaced(area, workers));
-}
-
-int64_t add_thin_parts(SparseVoxels& voxels, const SparseVoxels& around, std::vector<std::vector<RuleBrick>> tiles,
-                       const BrickArea& area, uint8_t material, const Workers& workers) {
-    const auto is_thick = [](const RuleBrick& brick) { return brick.is_thick; };
-    if (std::all_of(tiles.begin(), tiles.end(), [&](const auto& t) { return std::all_of(t.begin(), t.end(), is_thick); }))
-        return 0;
-    RuleBricks bricks(around, std::move(tiles), false);
-    int64_t added = 0;
-    ReplacedBricks replaced;
-    for (const AddedVoxels& one : keep_thin_parts(bricks, workers)) {
-        const RuleBrick& brick = bricks[one.brick];
-        if (!is_in(area, brick.code))
-            continue;
-        added += count(one.voxels);
-        replaced.bricks.push_back({brick.code, morton_order(brick.filled), material, 0});
-    }
-    std::sort(replaced.bricks.begin(), replaced.bricks.end(),
-              [](const ReplacedBrick& a, const ReplacedBrick& b) { return a.code < b.code; });
-    replace_bricks(voxels, replaced);
-    join_octants(voxels);
-    return added;
 }
 
 } // namespace voxrt::voxelize

@@ -11,6 +11,7 @@
 
 #include "../grid/sparse_voxels.h"
 #include "../work/workers.h"
+#include "brick_area.h"
 #include "rule.h"
 #include "rule_brick.h"
 #include "surface_areas.h"
@@ -26,21 +27,11 @@ struct RuleFindings {
     std::vector<MixedSurface> mixed;
 };
 
-/// Bricks x0 <= x < x1, y0 <= y < y1.
-struct BrickArea {
-    uint32_t x0, x1, y0, y1;
-};
-
 /// Takes from `voxels` what is not filled, and adds to `lost`, by object, how many voxels these were.
 ///
 /// `voxels`: those that are touched, within `area`. `around`: the same with those near the area, up to kThinReach;
 /// `findings` are of them.
 void apply_rule(SparseVoxels& voxels, const SparseVoxels& around, RuleFindings findings, const BrickArea& area,
                 Thin thin, const FindAreas& find_areas, std::vector<int64_t>& lost, const Workers& workers);
-
-/// The same for a scene of one material and one part, whose voxels are those that its rule fills: adds those of thin
-/// parts. Returns how many. `tiles`: their bricks.
-int64_t add_thin_parts(SparseVoxels& voxels, const SparseVoxels& around, std::vector<std::vector<RuleBrick>> tiles,
-                       const BrickArea& area, uint8_t material, const Workers& workers);
 
 } // namespace voxrt::voxelize

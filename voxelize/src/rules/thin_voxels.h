@@ -9,13 +9,17 @@ namespace voxrt::voxelize {
 /// Of 3 x 3 x 3 voxels or bricks, x + 3 y + 9 z.
 inline constexpr uint32_t kMiddle = 1u << 13;
 
-/// The touched voxels of a brick that are neither solid in bulk nor beside a voxel that is, by the brick's own voxels.
-inline Slices thin_alone(const RuleBrick& brick) {
+/// The touched voxels of a brick that are neither solid in bulk nor beside a voxel that is, by what is filled in it, in
+/// the brick below it and in the one above.
+inline Slices thin_in_column(const RuleBrick& brick, const Slices& below, const Slices& above) {
     constexpr uint64_t lowest = 0x0101'0101'0101'0101, highest = lowest << 7;
-    uint64_t cubes[kBrickSide + 3] = {}; // by lowest corner, two slices further
-    for (size_t z = 0; z + 1 < kBrickSide; ++z) {
-        const uint64_t both = brick.filled[z] & brick.filled[z + 1], pairs = both & both >> 1 & ~highest;
-        cubes[z + 2] = pairs & pairs >> 8;
+    const uint64_t filled[kBrickSide + 4] = {below[6],        below[7],        brick.filled[0], brick.filled[1],
+                                             brick.filled[2], brick.filled[3], brick.filled[4], brick.filled[5],
+                                             brick.filled[6], brick.filled[7], above[0],        above[1]};
+    uint64_t cubes[kBrickSide + 3]; // by lowest corner, two slices further
+    for (size_t z = 0; z < kBrickSide + 3; ++z) {
+        const uint64_t both = filled[z] & filled[z + 1], pairs = both & both >> 1 & ~highest;
+        cubes[z] = pairs & pairs >> 8;
     }
     Slices found;
     for (size_t z = 0; z < kBrickSide; ++z) {
@@ -41,7 +45,9 @@ inline uint32_t bricks_near(const Slices& voxels) {
 /// The voxels of a brick that belong to thin parts. `filled_around(wanted)`: the filled voxels of the 3 x 3 x 3 bricks
 /// around; those without a bit in `wanted` may be anything.
 template <class FilledAround> Slices thin_voxels(const RuleBrick& brick, FilledAround filled_around) {
-    const Slices alone = thin_alone(brick);
+    constexpr uint32_t below = 1u << 4, above = 1u << 22;
+    const std::array<const Slices*, 27> column = filled_around(below | above);
+    const Slices alone = thin_in_column(brick, *column[4], *column[22]);
     if (is_empty(alone))
         return alone;
     BrickWindow<2> bulk;

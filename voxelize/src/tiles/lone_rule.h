@@ -70,7 +70,8 @@ public:
         }();
         for (RuleBrick& brick : bricks_) {
             const int x = int(gather_bits(brick.code)) - tile_x_ * kTileBricks;
-            const int y = int(gather_bits(brick.code >> 1)) - tile_y_ * kTileBricks, z = int(gather_bits(brick.code >> 2));
+            const int y = int(gather_bits(brick.code >> 1)) - tile_y_ * kTileBricks,
+                      z = int(gather_bits(brick.code >> 2));
             brick.is_thick = is_empty(thin_voxels(brick, [&](uint32_t wanted) {
                 std::array<const Slices*, 27> around;
                 around.fill(&none);
@@ -87,7 +88,18 @@ public:
                 return around;
             }));
         }
-        out.assign(bricks_.begin(), bricks_.end());
+        // Cube by cube, as they are joined with those of other tiles.
+        const auto cube_of = [](const RuleBrick& brick) { return gather_bits(brick.code >> 2) / kTileBricks; };
+        std::vector<uint32_t> places(size_t(tile.height() / kTileBricks) + 2), order(bricks_.size());
+        for (const RuleBrick& brick : bricks_)
+            ++places[cube_of(brick) + 1];
+        for (size_t cube = 1; cube < places.size(); ++cube)
+            places[cube] += places[cube - 1];
+        for (uint32_t i = 0; i < bricks_.size(); ++i)
+            order[places[cube_of(bricks_[i])]++] = i;
+        out.reserve(bricks_.size());
+        for (const uint32_t i : order)
+            out.push_back(bricks_[i]);
     }
 
 private:

@@ -22,10 +22,11 @@ inline constexpr double kNotedOpening = 0.01;
 /// What a thread keeps from tile to tile.
 struct Scratch {
     /// `rule`, `lone`: null, or what one of them is to be.
-    Scratch(int side, size_t objects, size_t parts, std::unique_ptr<RuleTile> of_rule, std::unique_ptr<LoneRule> of_lone)
-        : surface(side), tile(side), rule(std::move(of_rule)), lone(std::move(of_lone)),
-          object_voxels(objects, 0), shell_of_open(objects, 0), inside_of_open(objects, 0), overlaps_itself(parts, 0),
-          positive(objects, 0), negative(objects, 0) {
+    Scratch(int side, size_t objects, size_t parts, std::unique_ptr<RuleTile> of_rule,
+            std::unique_ptr<LoneRule> of_lone)
+        : surface(side), tile(side), rule(std::move(of_rule)), lone(std::move(of_lone)), object_voxels(objects, 0),
+          shell_of_open(objects, 0), inside_of_open(objects, 0), overlaps_itself(parts, 0), positive(objects, 0),
+          negative(objects, 0) {
         fill.use_rule(rule.get(), lone.get());
         if (lone && lone->asks_for_volumes())
             sheets = std::make_unique<ColumnSheets>();
@@ -80,8 +81,7 @@ public:
     /// `finds_volumes`: whether find_volumes() is called, or else work().
     TileWorker(const std::vector<PartView>& parts, const TriangleBins& bins, int side, const CoverageEngine& engine,
                bool finds_volumes)
-        : TileParts(parts, bins, side), engine_(engine),
-          piece_limit_(finds_volumes ? kFineLimit : kHalfLimit) {}
+        : TileParts(parts, bins, side), engine_(engine), piece_limit_(finds_volumes ? kFineLimit : kHalfLimit) {}
 
     /// `slot`: the place of `out` among the results of a block.
     void work(uint32_t index, uint32_t slot, Scratch& s, TileResult& out) const {
@@ -180,9 +180,9 @@ private:
         std::optional<CappedSurface> own;
         const CappedSurface* capped = capped_of(index, *vertices, own);
         s.seconds.holes += lap();
-        // Only of a closed surface it is known that each sheet has an inside and an outside.
-        ColumnSheets* sheets =
-            analysis.closed && capped == nullptr && engine_.find_needed != nullptr ? s.sheets.get() : nullptr;
+        // Sheets take a surface whose triangles meet along all their edges.
+        const bool has_sheets = analysis.closed && analysis.orientation == nullptr && capped == nullptr;
+        ColumnSheets* sheets = has_sheets && engine_.find_needed != nullptr ? s.sheets.get() : nullptr;
         s.fill.use_sheets(sheets);
         if (sheets != nullptr)
             sheets->clear();
@@ -278,7 +278,8 @@ private:
                     }
                     if (counts && has_caps)
                         cross_triangle(a, b, c, window, surface);
-                    wanted.pieces = sheets == nullptr && counts && by_volume && by_vectors && fits_pieces(a, b, c, window.top, piece_limit_);
+                    wanted.pieces = sheets == nullptr && counts && by_volume && by_vectors &&
+                                    fits_pieces(a, b, c, window.top, piece_limit_);
                     if (sheets == nullptr && counts && by_volume && !wanted.pieces)
                         add_pieces(a, b, c, window, surface);
                 }
@@ -297,21 +298,21 @@ private:
         if (sheets == nullptr)
             return;
         engine_.find_needed(*sheets, window.top);
-        for_each_triangle(mesh, capped, vertices, triangles, window, [&](size_t t) {
-            if (analysis.is_covered(mesh, t) || (orientation != nullptr && orientation->is_uncounted(t)))
-                return;
-            const int32_t* corner = mesh.triangles.data() + 3 * t;
-            const bool reversed = orientation != nullptr && orientation->is_reversed(t);
-            const Vertex &a = vertices[corner[0]], &b = vertices[corner[reversed ? 2 : 1]],
-                         &c = vertices[corner[reversed ? 1 : 2]];
-            if (is_upright(a, b, c))
-                return;
-            NeededPieces needed(surface, sheets->needed[faces_down(a, b, c)], window);
-            if (fits_vectors(a, b, c) && fits_pieces(a, b, c, window.top, piece_limit_))
-                engine_.add_needed_pieces(a, b, c, window, *sheets, surface);
-            else
-                add_pieces(a, b, c, window, needed);
-        }, [](size_t) {});
+        for_each_triangle(
+            mesh, capped, vertices, triangles, window,
+            [&](size_t t) {
+                const int32_t* corner = mesh.triangles.data() + 3 * t;
+                const Vertex &a = vertices[corner[0]], &b = vertices[corner[1]], &c = vertices[corner[2]];
+                count_work(10);
+                if (is_upright(a, b, c))
+                    return;
+                NeededPieces needed(surface, sheets->needed[faces_down(a, b, c)], window);
+                if (fits_vectors(a, b, c) && fits_pieces(a, b, c, window.top, piece_limit_))
+                    engine_.add_needed_pieces(a, b, c, window, *sheets, surface);
+                else
+                    add_pieces(a, b, c, window, needed);
+            },
+            [](size_t) {});
     }
 
     /// Marks all columns that a triangle may cover.

@@ -1,5 +1,6 @@
 #include "voxelizer.h"
 
+#include "../rules/lone_thin_parts.h"
 #include "../rules/rule_voxels.h"
 #include "../rules/thin_parts.h"
 #include "../vectors/instruction_sets.h"

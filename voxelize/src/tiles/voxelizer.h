@@ -24,6 +24,7 @@
 //   order     bricks put in Morton order                                         surface bricks; L2 cache
 // and at last
 //   rule      voxels that a rule does not fill are taken away, thin parts kept     surface bricks; L2 cache
+//             (a single part of one material: its tiles take what the rule fills, and only thin parts are left)
 //   gather    the bricks of all tiles laid out one after another                 surface bricks; memory bandwidth
 //
 // A part that touches few tiles is not binned by triangle: its tiles take it whole and snap its vertices themselves.
