@@ -1,5 +1,7 @@
 #include "tile_surface.h"
 
+#include "../rules/rule.h"
+
 namespace voxrt::voxelize {
 
 void TileSurface::add_row_slowly(int column, int k, int row, ColumnBytes covered, ColumnBytes crossed, bool enters) {
@@ -13,10 +15,21 @@ void TileSurface::cross_row(int group, int y, int k, ColumnBytes crossed, bool e
     add_crossings(at((y >> kBrickBits) * kTileBricks + group, k), y & (kBrickSide - 1), crossed, enters);
 }
 
-void TileSurface::hold_in_tile(int x, int y, int z, bool on) {
+void TileSurface::hold_in_tile(int x, int y, int z) {
     const int column = (y >> kBrickBits) * kTileBricks + (x >> kBrickBits);
-    ShellBrick& brick = at(column, z >> kBrickBits);
-    row_of(on ? brick.on : brick.held)[z & (kBrickSide - 1)] |= uint64_t{1} << column_bit(x, y);
+    row_of(at(column, z >> kBrickBits).held)[z & (kBrickSide - 1)] |= uint64_t{1} << column_bit(x, y);
+}
+
+void TileSurface::note_on_centre(int x, int y, int z) {
+    const int column = (y >> kBrickBits) * kTileBricks + (x >> kBrickBits);
+    row_of(at(column, z >> kBrickBits).on)[z & (kBrickSide - 1)] |= uint64_t{1} << column_bit(x, y);
+}
+
+void TileSurface::add_piece(int x, int y, int z, double area, double volume) {
+    const int slice = z & (kBrickSide - 1), bit = column_bit(x - x_, y - y_);
+    double* const slices = pieces_at(locate(x, y).column, z >> kBrickBits).column(bit) + slice;
+    slices[0] += volume;
+    slices[1] += area - volume;
 }
 
 void TileSurface::add_pieces(const ColumnPieces& columns, int count, int from, int to) {
@@ -26,7 +39,7 @@ void TileSurface::add_pieces(const ColumnPieces& columns, int count, int from, i
         for (int z = columns.z[i] + from, level = 0; z < end;) {
             const int slice = z & (kBrickSide - 1), count_here = std::min(end - z, kBrickSide - slice);
             ShellBrick& brick = this->at(column, z >> kBrickBits);
-            if (notes_asked_)
+            if (kHasLoneRules && notes_asked_)
                 for (uint64_t *row = &row_of(brick.asked)[size_t(slice)], *last = row + count_here; row != last; ++row)
                     *row |= uint64_t{1} << bit;
             double* at = pieces_of(brick).column(bit) + slice;

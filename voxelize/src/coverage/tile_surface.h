@@ -153,8 +153,10 @@ public:
         for (int z = lo; z <= hi; ++z)
             hold_in_tile(x - x_, y - y_, z);
     }
-    /// The same for a voxel; x and y from the tile's lowest column. `on`: it goes to on_centres().
-    void hold_in_tile(int x, int y, int z, bool on = false);
+    /// The same for a voxel; x and y from the tile's lowest column.
+    void hold_in_tile(int x, int y, int z);
+    /// The same for on_centres().
+    void note_on_centre(int x, int y, int z);
 
     /// Receives from cover_triangle that the ray of column (x, y) crosses the surface at voxel z.
     void cross(int x, int y, int z, bool enters) {
@@ -175,12 +177,7 @@ public:
     bool wants(int, int) const { return true; }
     void begin_column(int, int, int, int) {}
     /// The same for what a triangle adds to the volume of voxel z, and to each above.
-    void add_piece(int x, int y, int z, double area, double volume) {
-        const int slice = z & (kBrickSide - 1), bit = column_bit(x - x_, y - y_);
-        double* const slices = pieces_at(locate(x, y).column, z >> kBrickBits).column(bit) + slice;
-        slices[0] += volume;
-        slices[1] += area - volume;
-    }
+    void add_piece(int x, int y, int z, double area, double volume);
 
     /// The same for voxels z + from … z + to - 1 of the first `count` columns. In a file of its own, as add_row_slowly.
     void add_pieces(const ColumnPieces& columns, int count, int from, int to);

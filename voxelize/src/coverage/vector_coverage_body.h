@@ -253,8 +253,12 @@ inline void cover_area(const Corners& t, const Area& area, const Wanted& wanted,
                 for (alignas(64) double voxels[kLanes]; held != 0; held &= held - 1) {
                     store(voxels, below);
                     const int lane = __builtin_ctzll(held), x = group * kLanes + lane;
-                    if (voxels[lane] <= top && is_over(t, x * kVoxel + kCentre, y * kVoxel + kCentre))
-                        surface.hold_in_tile(x, y, static_cast<int>(voxels[lane]), wanted.sheets != nullptr);
+                    if (voxels[lane] > top || !is_over(t, x * kVoxel + kCentre, y * kVoxel + kCentre))
+                        continue;
+                    if (wanted.sheets != nullptr)
+                        surface.note_on_centre(x, y, static_cast<int>(voxels[lane]));
+                    else
+                        surface.hold_in_tile(x, y, static_cast<int>(voxels[lane]));
                 }
             }
             store_as_int(lo, z.lo);

@@ -28,7 +28,9 @@ int64_t add_thin_parts(SparseVoxels& voxels, const SparseVoxels& around, std::ve
     RuleBricks bricks(around, std::move(tiles), false);
     int64_t added = 0;
     ReplacedBricks replaced;
-    for (const AddedVoxels& one : keep_thin_parts(bricks, workers)) {
+    std::vector<AddedVoxels> parts;
+    keep_thin_parts(bricks, workers, &parts);
+    for (const AddedVoxels& one : parts) {
         const RuleBrick& brick = bricks[one.brick];
         if (!area.holds(brick.code))
             continue;

@@ -375,7 +375,7 @@ void apply_rule(SparseVoxels& voxels, const SparseVoxels& around, RuleFindings f
                 Thin thin, const FindAreas& find_areas, std::vector<int64_t>& lost, const Workers& workers) {
     RuledVoxels ruled(around, findings);
     if (thin == Thin::keep)
-        keep_thin_parts(ruled.bricks(), workers);
+        keep_thin_parts(ruled.bricks(), workers, nullptr);
     ruled.find_orphans(workers);
     ruled.find_shown(area, find_areas, workers);
     ruled.count_lost(area, lost);

@@ -1,5 +1,6 @@
 #include "thin_parts.h"
 
+#include "rule.h"
 #include "thin_voxels.h"
 
 namespace voxrt::voxelize {
@@ -91,10 +92,11 @@ bool leaves_none_alone(const BrickWindow<2>& filled, const BrickWindow<2>& touch
 
 /// The voxels of a brick that belong to thin parts.
 Slices find_thin(const RuleBricks& bricks, size_t i) {
+    if (kHasLoneRules && bricks[i].is_thick)
+        return {};
     const auto filled = [](const RuleBrick& b) -> const Slices& { return b.filled; };
-    return bricks[i].is_thick
-               ? Slices{}
-               : thin_voxels(bricks[i], [&](uint32_t wanted) { return bricks.sets(bricks.around(i, wanted), filled); });
+    return thin_voxels(thin_in_column(bricks[i], {}, {}),
+                       [&](uint32_t wanted) { return bricks.sets(bricks.around(i, wanted), filled); });
 }
 
 /// The voxels of a brick that are not filled, of thin parts or beside one of their voxels.
@@ -146,7 +148,7 @@ void take(const RuleBricks& bricks, ThinBrick& thin, int turn) {
 
 } // namespace
 
-std::vector<AddedVoxels> keep_thin_parts(RuleBricks& bricks, const Workers& workers) {
+void keep_thin_parts(RuleBricks& bricks, const Workers& workers, std::vector<AddedVoxels>* added) {
     constexpr size_t kBricks = 64; // per job
     const size_t jobs = (bricks.size() + kBricks - 1) / kBricks;
     LargeVector<Slices> of_thin_parts;
@@ -160,7 +162,7 @@ std::vector<AddedVoxels> keep_thin_parts(RuleBricks& bricks, const Workers& work
         }
     });
     if (std::none_of(has_some.begin(), has_some.end(), [](uint8_t some) { return some != 0; }))
-        return {};
+        return;
     std::vector<std::vector<ThinBrick>> found(jobs);
     workers.run(jobs, [&](size_t job, int) {
         for (size_t i = job * kBricks; i < std::min(bricks.size(), (job + 1) * kBricks); ++i) {
@@ -191,11 +193,11 @@ std::vector<AddedVoxels> keep_thin_parts(RuleBricks& bricks, const Workers& work
             for (int z = 0; z < kBrickSide; ++z)
                 bricks[t.brick].filled[z] &= ~t.taken[z];
     }
-    std::vector<AddedVoxels> added;
+    if (!kHasLoneRules || added == nullptr)
+        return;
     for (const ThinBrick& t : thin)
         if (const Slices left = without(t.candidates, without(t.candidates, bricks[t.brick].filled)); !is_empty(left))
-            added.push_back({t.brick, left});
-    return added;
+            added->push_back({t.brick, left});
 }
 
 } // namespace voxrt::voxelize

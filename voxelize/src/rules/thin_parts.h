@@ -27,7 +27,7 @@ struct AddedVoxels {
     Slices voxels;
 };
 
-/// Fills voxels of thin parts. Returns which ones.
-std::vector<AddedVoxels> keep_thin_parts(RuleBricks& bricks, const Workers& workers);
+/// Fills voxels of thin parts. `added`, where there are lone rules and it is not null, gets them.
+void keep_thin_parts(RuleBricks& bricks, const Workers& workers, std::vector<AddedVoxels>* added);
 
 } // namespace voxrt::voxelize

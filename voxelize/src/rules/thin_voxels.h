@@ -2,6 +2,7 @@
 #pragma once
 
 #include "brick_window.h"
+#include "rule.h"
 #include "rule_brick.h"
 
 namespace voxrt::voxelize {
@@ -16,8 +17,9 @@ inline Slices thin_in_column(const RuleBrick& brick, const Slices& below, const 
     const uint64_t filled[kBrickSide + 4] = {below[6],        below[7],        brick.filled[0], brick.filled[1],
                                              brick.filled[2], brick.filled[3], brick.filled[4], brick.filled[5],
                                              brick.filled[6], brick.filled[7], above[0],        above[1]};
-    uint64_t cubes[kBrickSide + 3]; // by lowest corner, two slices further
-    for (size_t z = 0; z < kBrickSide + 3; ++z) {
+    uint64_t cubes[kBrickSide + 3] = {};             // by lowest corner, two slices further
+    constexpr size_t beside = kHasLoneRules ? 0 : 2; // slices of the other bricks, which hold something there alone
+    for (size_t z = beside; z < kBrickSide + 3 - beside; ++z) {
         const uint64_t both = filled[z] & filled[z + 1], pairs = both & both >> 1 & ~highest;
         cubes[z] = pairs & pairs >> 8;
     }
@@ -42,12 +44,10 @@ inline uint32_t bricks_near(const Slices& voxels) {
     return found;
 }
 
-/// The voxels of a brick that belong to thin parts. `filled_around(wanted)`: the filled voxels of the 3 x 3 x 3 bricks
-/// around; those without a bit in `wanted` may be anything.
-template <class FilledAround> Slices thin_voxels(const RuleBrick& brick, FilledAround filled_around) {
-    constexpr uint32_t below = 1u << 4, above = 1u << 22;
-    const std::array<const Slices*, 27> column = filled_around(below | above);
-    const Slices alone = thin_in_column(brick, *column[4], *column[22]);
+/// The voxels of a brick that belong to thin parts. `alone`: those that thin_in_column() leaves;
+/// `filled_around(wanted)`: the filled voxels of the 3 x 3 x 3 bricks around; those without a bit in `wanted` may be
+/// anything.
+template <class FilledAround> Slices thin_voxels(const Slices& alone, FilledAround filled_around) {
     if (is_empty(alone))
         return alone;
     BrickWindow<2> bulk;

@@ -56,7 +56,6 @@ public:
     const std::vector<HalfDoubt>& doubts() const { return doubts_; }
     std::vector<RuleBrick>& bricks() { return bricks_; }
     double error_bound() const { return error_; }
-    template <class Take> void for_each_summand(const HalfDoubt&, int, int, Take take) const { take(0); }
 
     /// Marks the bricks that are thick whatever other tiles hold, and appends all. `tile`: what is filled.
     void take_bricks(const TileVoxels& tile, std::vector<RuleBrick>& out) {
@@ -72,18 +71,19 @@ public:
             const int x = int(gather_bits(brick.code)) - tile_x_ * kTileBricks;
             const int y = int(gather_bits(brick.code >> 1)) - tile_y_ * kTileBricks,
                       z = int(gather_bits(brick.code >> 2));
-            brick.is_thick = is_empty(thin_voxels(brick, [&](uint32_t wanted) {
+            const auto filled_at = [&](int u, int v, int k) {
+                if (u < 0 || v < 0 || k < 0 || u >= kTileBricks || v >= kTileBricks || k >= tile.height())
+                    return &none;
+                const uint32_t slot = *tile.slots(v * kTileBricks + u, k);
+                return slot == 0 ? &none : slot < TileVoxels::kFirstBrick ? &all : &tile.brick(slot).mask;
+            };
+            const Slices alone = thin_in_column(brick, *filled_at(x, y, z - 1), *filled_at(x, y, z + 1));
+            brick.is_thick = is_empty(thin_voxels(alone, [&](uint32_t wanted) {
                 std::array<const Slices*, 27> around;
                 around.fill(&none);
                 for (; wanted != 0; wanted &= wanted - 1) {
                     const int n = std::countr_zero(wanted);
-                    const int u = x + n % 3 - 1, v = y + n / 3 % 3 - 1, k = z + n / 9 - 1;
-                    if (u < 0 || v < 0 || k < 0 || u >= kTileBricks || v >= kTileBricks || k >= tile.height())
-                        continue;
-                    const uint32_t slot = *tile.slots(v * kTileBricks + u, k);
-                    around[size_t(n)] = slot == 0                        ? &none
-                                        : slot < TileVoxels::kFirstBrick ? &all
-                                                                         : &tile.brick(slot).mask;
+                    around[size_t(n)] = filled_at(x + n % 3 - 1, y + n / 3 % 3 - 1, z + n / 9 - 1);
                 }
                 return around;
             }));

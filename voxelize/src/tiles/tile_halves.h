@@ -9,10 +9,10 @@ class TileHalves : TileParts {
 public:
     using TileParts::TileParts;
 
-    /// Fills those of some voxels whose volumes add up to a half. `rule` summed them; `buffer`: for vertices.
-    template <class Summed>
-    void decide(const std::vector<HalfDoubt>& doubts, uint32_t index, const Summed& rule, std::vector<Vertex>& buffer,
-                std::vector<RuleBrick>& bricks) const {
+    /// Fills those of some voxels whose volumes add up to a half. `rule` summed them, or is null where they are of part
+    /// 0 alone; `error`: of a sum; `buffer`: for vertices.
+    void decide(const std::vector<HalfDoubt>& doubts, uint32_t index, const RuleTile* rule, double error,
+                std::vector<Vertex>& buffer, std::vector<RuleBrick>& bricks) const {
         const int x0 = int(index) % bins_.tiles_per_side * kTileSide;
         const int y0 = int(index) / bins_.tiles_per_side * kTileSide;
         const auto at = [](const HalfDoubt& doubt, int bit) {
@@ -44,8 +44,7 @@ public:
             count_work(1000);
             RuleBrick& brick = bricks[doubt.brick];
             const auto [u0, v0] = at(doubt, 0);
-            const Slices sure =
-                near.sure_halves(doubt.voxels, x0 + u0, y0 + v0, doubt.k * kBrickSide, rule.error_bound());
+            const Slices sure = near.sure_halves(doubt.voxels, x0 + u0, y0 + v0, doubt.k * kBrickSide, error);
             for (int z = 0; z < kBrickSide; ++z) {
                 uint64_t halves = sure[size_t(z)];
                 for (uint64_t left = doubt.voxels[size_t(z)] & ~halves; left != 0; left &= left - 1) {
@@ -53,8 +52,11 @@ public:
                     const auto [u, v] = at(doubt, bit);
                     const std::array<int, 3> voxel{x0 + u, y0 + v, doubt.k * kBrickSide + z};
                     ExactSum sum;
-                    rule.for_each_summand(doubt, z, bit,
-                                          [&](uint32_t part) { add_exact_volume(part, voxel, near, column, sum); });
+                    const auto add = [&](uint32_t part) { add_exact_volume(part, voxel, near, column, sum); };
+                    if (kHasLoneRules && rule == nullptr)
+                        add(0);
+                    else
+                        rule->for_each_summand(doubt, z, bit, add);
                     halves |= uint64_t{sum.at_least_half()} << bit;
                 }
                 brick.filled[size_t(z)] |= halves & brick.touched[size_t(z)];

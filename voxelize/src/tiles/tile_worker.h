@@ -19,23 +19,31 @@ namespace voxrt::voxelize {
 /// pinholes do not.
 inline constexpr double kNotedOpening = 0.01;
 
+/// Owns what there is for lone rules alone.
+struct DeleteLone {
+    template <class Owned> void operator()(Owned* owned) const {
+        if constexpr (kHasLoneRules)
+            delete owned;
+    }
+};
+template <class Owned> using LonePointer = std::unique_ptr<Owned, DeleteLone>;
+
 /// What a thread keeps from tile to tile.
 struct Scratch {
     /// `rule`, `lone`: null, or what one of them is to be.
-    Scratch(int side, size_t objects, size_t parts, std::unique_ptr<RuleTile> of_rule,
-            std::unique_ptr<LoneRule> of_lone)
+    Scratch(int side, size_t objects, size_t parts, std::unique_ptr<RuleTile> of_rule, LonePointer<LoneRule> of_lone)
         : surface(side), tile(side), rule(std::move(of_rule)), lone(std::move(of_lone)), object_voxels(objects, 0),
           shell_of_open(objects, 0), inside_of_open(objects, 0), overlaps_itself(parts, 0), positive(objects, 0),
           negative(objects, 0) {
         fill.use_rule(rule.get(), lone.get());
-        if (lone && lone->asks_for_volumes())
-            sheets = std::make_unique<ColumnSheets>();
+        if (kHasLoneRules && lone && lone->asks_for_volumes())
+            sheets.reset(new ColumnSheets);
     }
     TileSurface surface;
     TileVoxels tile;
     std::unique_ptr<RuleTile> rule; // these two are null where all parts have `touch`, or else one of them
-    std::unique_ptr<LoneRule> lone;
-    std::unique_ptr<ColumnSheets> sheets; // where that one asks for volumes
+    LonePointer<LoneRule> lone;
+    LonePointer<ColumnSheets> sheets; // where that one asks for volumes
     SolidFill fill;
     TileSorter sorter;
     std::vector<Vertex> vertices;
@@ -88,14 +96,15 @@ public:
         const int tile_x = int(index) % bins_.tiles_per_side, tile_y = int(index) / bins_.tiles_per_side;
         for_each_part(index, s, [](uint32_t) {});
         Stopwatch lap;
-        if (s.lone)
+        if (kHasLoneRules && s.lone)
             s.object_voxels[0] += take_lone(index, s, out);
         if (!s.tile.empty())
             s.sorter.sort(s.tile, slot, tile_x, tile_y, out);
         if (s.rule)
             if (const std::vector<HalfDoubt> doubts = s.rule->list(s.tile, out.rule_bricks, out.owned, out.mixed);
                 !doubts.empty())
-                TileHalves(parts_, bins_, side_).decide(doubts, index, *s.rule, s.vertices, out.rule_bricks);
+                TileHalves(parts_, bins_, side_)
+                    .decide(doubts, index, s.rule.get(), s.rule->error_bound(), s.vertices, out.rule_bricks);
         s.seconds.order += lap();
     }
 
@@ -117,7 +126,8 @@ private:
     int64_t take_lone(uint32_t index, Scratch& s, TileResult& out) const {
         int64_t added = 0;
         if (!s.lone->doubts().empty()) {
-            TileHalves(parts_, bins_, side_).decide(s.lone->doubts(), index, *s.lone, s.vertices, s.lone->bricks());
+            TileHalves(parts_, bins_, side_)
+                .decide(s.lone->doubts(), index, nullptr, s.lone->error_bound(), s.vertices, s.lone->bricks());
             for (const HalfDoubt& doubt : s.lone->doubts())
                 if (const Slices& filled = s.lone->bricks()[doubt.brick].filled; !is_empty(filled))
                     added += s.tile.claim(doubt.column, doubt.k, filled, material_of(parts_[0]), nullptr);
@@ -146,7 +156,7 @@ private:
                                                                         : 0;
             if (s.rule)
                 s.rule->begin(part, parts_[part].object, parts_[part].rule, listed);
-            if (s.lone)
+            if (kHasLoneRules && s.lone)
                 s.lone->clear(tile_x, tile_y, listed);
             if (parts_[part].kind == PartKind::mesh) {
                 add_mesh(part, triangles, window, s);
@@ -181,8 +191,9 @@ private:
         const CappedSurface* capped = capped_of(index, *vertices, own);
         s.seconds.holes += lap();
         // Sheets take a surface whose triangles meet along all their edges.
-        const bool has_sheets = analysis.closed && analysis.orientation == nullptr && capped == nullptr;
-        ColumnSheets* sheets = has_sheets && engine_.find_needed != nullptr ? s.sheets.get() : nullptr;
+        const bool has_sheets =
+            kHasLoneRules && analysis.closed && analysis.orientation == nullptr && capped == nullptr;
+        ColumnSheets* sheets = has_sheets ? s.sheets.get() : nullptr;
         s.fill.use_sheets(sheets);
         if (sheets != nullptr)
             sheets->clear();
@@ -225,7 +236,8 @@ private:
     template <bool Cross>
     void cover(const PartView& part, const MeshAnalysis& analysis, const CappedSurface* capped,
                const std::vector<Vertex>& vertices, std::span<const BinnedTriangle> triangles, const Window& window,
-               bool has_rule, ColumnSheets* sheets, TileSurface& surface) const {
+               bool has_rule, ColumnSheets* of_columns, TileSurface& surface) const {
+        ColumnSheets* const sheets = kHasLoneRules ? of_columns : nullptr;
         const MeshView& mesh = *part.mesh;
         surface.set_material(part.material);
         const Orientation* orientation = analysis.orientation.get();
@@ -265,7 +277,7 @@ private:
                 } else {
                     const bool by_volume = part.rule == Rule::half && !has_caps;
                     const bool crosses = counts && !has_caps;
-                    const bool has_sheets = sheets != nullptr && counts;
+                    const bool has_sheets = kHasLoneRules && sheets != nullptr && counts;
                     if (by_vectors && !is_upright(a, b, c))
                         wanted = {crosses, true, !by_volume || has_sheets};
                     else if (crosses || !by_volume)
@@ -295,7 +307,7 @@ private:
             }
         };
         for_each_triangle(mesh, capped, vertices, triangles, window, add, add_cap);
-        if (sheets == nullptr)
+        if (!kHasLoneRules || sheets == nullptr)
             return;
         engine_.find_needed(*sheets, window.top);
         for_each_triangle(
