@@ -182,6 +182,61 @@ async def without_a_flush_lines_stay(dut):
 
 
 @cocotb.test()
+async def a_frame_begins_when_all_lines_have_come(dut):
+    """Start it, after a flush or without, while lines are under way that no lane waits for any more."""
+    memory = Memory(dut)
+    memory.bus.latency, memory.bus.jitter = 10, 10
+    await memory.begin()
+    for number in range(24):
+        await memory.frame()
+        await memory.read(random.randrange(1, 60))
+        memory.requests = [[None] * SLOTS for _ in range(memory.lanes)]
+        drive(dut, flush_i=number % 4 > 0)
+        await memory.read(random.randrange(1, 12), stop=True)
+        drive(dut, flush_i=0)
+        await memory.frame()
+        assert not any(memory.bus.lines)
+        if number % 4:
+            memory.fill()
+        await memory.read(40)
+        await memory.drain()
+
+
+@cocotb.test()
+async def a_line_is_read_from_the_bus_once(dut):
+    """Lanes ask for the same few lines, one after the other; the bus is asked for those, in this order."""
+    memory = Memory(dut)
+    await memory.begin()
+    await memory.frame()
+    wanted = []
+    for block in random.sample(range(1, BLOCKS), 8):
+        wanted.append(memory.base + 32 * (block + 1))
+        for lane in random.sample(range(memory.lanes), memory.lanes):
+            while not await memory.ask(lane, block):
+                assert len(memory.bus.addresses) <= len(wanted)
+            assert memory.bus.addresses == wanted
+
+
+@cocotb.test()
+async def lines_of_a_set_are_read_while_one_comes(dut):
+    """Answer at once for the lines that stay, whichever way of the set the line that comes is to take."""
+    memory = Memory(dut)
+    memory.bus.latency = 80
+    await memory.begin()
+    await memory.frame()
+    for lane in range(memory.lanes):
+        ways = []
+        for block in range(20 * lane, 20 * lane + 18, 2):  # of one set; none of another lane
+            assert not await memory.ask(lane, block)
+            ways = ways[-3:]
+            for other in ways:
+                assert await memory.ask(lane, other)
+            while not await memory.ask(lane, block):
+                pass
+            ways.append(block)
+
+
+@cocotb.test()
 async def the_least_recently_used_line_goes(dut):
     """Answer a lane at its first question while its line is one of the last four of the set."""
     memory = Memory(dut)
