@@ -96,6 +96,10 @@ REASONS = {
     "cached_memory memory/voxrt_l1_cache.sv:247 const1 at Y[0]": (
         "the L2 is not idle until the line has left it; the walk through the sets takes longer than the rest of its way"
     ),
+    "core rays/voxrt_counters.sv:30 const0 at Y[25]": "bit 25 of a count of hits: needs a frame of so many",
+    "core rays/voxrt_counters.sv:29 const0 at A[30]": "bit 30 of a count of pixels: needs a frame of so many",
+    "core rays/voxrt_counters.sv:27 const0 at Q[16]": "bit 16 of the count of clocks: needs a frame of 65,536",
+    "core voxrt_core.sv:235 cnot0 at A[3]": "inverts one write enable where another is low: no word is written anyway",
     "plane_time common/voxrt_plane_time.sv:68 inv at WR_EN[51]": "bit 56 of a time of 55 bits; unread",
     "brightness shading/voxrt_brightness.sv:149 inv at Y[2]": (
         "bit 2 of a product of 50 bits, which a brightness of 8 bits shows for few"
