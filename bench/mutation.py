@@ -43,6 +43,7 @@ MUTANTS = 1000
 PATIENCE = 3  # A bench that takes so many times the processor time that it takes without a fault has found it.
 KILLED = ("own bench", "larger bench", "proof")
 ALIVE, EQUIVALENT, NOT_MET = "alive", "equivalent", "not met"
+CREDITS = "an assertion on credits, which the netlist lacks, finds this fault in the sources"
 # Survivors that were looked at: group, place, fault without its wire; why no bench finds it.
 REASONS = {
     "ray_setup-shared common/voxrt_collect.sv:31 const0 at A[1]": (
@@ -96,6 +97,10 @@ REASONS = {
     "cached_memory memory/voxrt_l1_cache.sv:247 const1 at Y[0]": (
         "the L2 is not idle until the line has left it; the walk through the sets takes longer than the rest of its way"
     ),
+    "core lane/voxrt_buffered_lane.sv:124 inv at Y[0]": CREDITS,
+    "core lane/voxrt_buffered_lane.sv:126 const1 at D[3]": CREDITS,
+    "core lane/voxrt_buffered_lane.sv:128 inv at A[4]": CREDITS,
+    "core lane/voxrt_buffered_lane.sv:128 const1 at B[0]": CREDITS,
     "core rays/voxrt_counters.sv:30 const0 at Y[25]": "bit 25 of a count of hits: needs a frame of so many",
     "core rays/voxrt_counters.sv:29 const0 at A[30]": "bit 30 of a count of pixels: needs a frame of so many",
     "core rays/voxrt_counters.sv:27 const0 at Q[16]": "bit 16 of the count of clocks: needs a frame of 65,536",
