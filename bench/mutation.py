@@ -99,8 +99,6 @@ REASONS = {
     ),
     "core lane/voxrt_buffered_lane.sv:124 inv at Y[0]": CREDITS,
     "core lane/voxrt_buffered_lane.sv:126 const1 at D[3]": CREDITS,
-    "core lane/voxrt_buffered_lane.sv:128 inv at A[4]": CREDITS,
-    "core lane/voxrt_buffered_lane.sv:128 const1 at B[0]": CREDITS,
     "core rays/voxrt_counters.sv:30 const0 at Y[25]": "bit 25 of a count of hits: needs a frame of so many",
     "core rays/voxrt_counters.sv:29 const0 at A[30]": "bit 30 of a count of pixels: needs a frame of so many",
     "core rays/voxrt_counters.sv:27 const0 at Q[16]": "bit 16 of the count of clocks: needs a frame of 65,536",
