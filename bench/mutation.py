@@ -43,6 +43,7 @@ MUTANTS = 1000
 PATIENCE = 3  # A bench that takes so many times the processor time that it takes without a fault has found it.
 KILLED = ("own bench", "larger bench", "proof")
 ALIVE, EQUIVALENT, NOT_MET = "alive", "equivalent", "not met"
+CREDITS = "an assertion on credits, which the netlist lacks, finds this fault in the sources"
 # Survivors that were looked at: group, place, fault without its wire; why no bench finds it.
 REASONS = {
     "ray_setup-shared common/voxrt_collect.sv:31 const0 at A[1]": (
@@ -81,11 +82,27 @@ REASONS = {
     ),
     "registers generated/voxrt_registers.sv:795 const0 at A[0]": "a pulse is 0 again before the next write",
     "registers generated/voxrt_registers.sv:977 const0 at B[0]": "the flag of a bus, which this core does not have",
-    "cached_memory memory/voxrt_l2_cache.sv:199 inv at Y[1]": "which line of a set of the L2 makes room: time alone",
-    "cached_memory memory/voxrt_l2_cache.sv:199 inv at Y[0]": "which line of a set of the L2 makes room: time alone",
-    "cached_memory memory/voxrt_l2_cache.sv:228 const0 at Q[0]": "which line of a set of the L2 makes room: time alone",
-    "cached_memory memory/voxrt_l2_cache.sv:223 const1 at Y[0]": "which line of a set of the L2 makes room: time alone",
-    "cached_memory memory/voxrt_l2_cache.sv:228 const1 at Q[1]": "which line of a set of the L2 makes room: time alone",
+    "lane lane/voxrt_next_cell.sv:79 const1 at Y[0]": "decides on dead axes alone, by which no ray leaves a cell",
+    "lane lane/voxrt_slot_scheduler.sv:239 cnot1 at B[34]": (
+        "needs bit 10 of a count of planes, which is at most 64 in this lane"
+    ),
+    "cached_memory memory/voxrt_l2_cache.sv:98 const1 at RD_DATA[13]": (
+        "the number of a line on its way to the lanes, of which only the set is read"
+    ),
+    "cached_memory memory/voxrt_cached_memory.sv:61 const1 at A[0]": (
+        "whether caches were emptied at the clock of a reset, after which no frame waits for that"
+    ),
+    "cached_memory memory/voxrt_l1_cache.sv:79 cnot1 at Y[2]": "the walk visits the sets as often, in another order",
+    "cached_memory memory/voxrt_l1_cache.sv:181 inv at B[0]": "the walk visits the sets as often, in another order",
+    "cached_memory memory/voxrt_l1_cache.sv:247 const1 at Y[0]": (
+        "the L2 is not idle until the line has left it; the walk through the sets takes longer than the rest of its way"
+    ),
+    "core lane/voxrt_buffered_lane.sv:124 inv at Y[0]": CREDITS,
+    "core lane/voxrt_buffered_lane.sv:126 const1 at D[3]": CREDITS,
+    "core rays/voxrt_counters.sv:30 const0 at Y[25]": "bit 25 of a count of hits: needs a frame of so many",
+    "core rays/voxrt_counters.sv:29 const0 at A[30]": "bit 30 of a count of pixels: needs a frame of so many",
+    "core rays/voxrt_counters.sv:27 const0 at Q[16]": "bit 16 of the count of clocks: needs a frame of 65,536",
+    "core voxrt_core.sv:235 cnot0 at A[3]": "inverts one write enable where another is low: no word is written anyway",
     "plane_time common/voxrt_plane_time.sv:68 inv at WR_EN[51]": "bit 56 of a time of 55 bits; unread",
     "brightness shading/voxrt_brightness.sv:149 inv at Y[2]": (
         "bit 2 of a product of 50 bits, which a brightness of 8 bits shows for few"

@@ -125,6 +125,26 @@ class Memory:
         raise AssertionError("a ray waits for ever")
 
 
+class SharedLines:
+    """The L2 as lanes see it that ask one after the other."""
+
+    def __init__(self, sets):
+        self.ways = [[None] * 4 for _ in range(sets)]
+        self.used = [[0] * 3 for _ in range(sets)]  # The half used last, and the way used last of each half.
+
+    def holds(self, line):
+        """Look a line up, which takes an empty way or one not used lately; tell whether it was there."""
+        ways, used = self.ways[line % len(self.ways)], self.used[line % len(self.ways)]
+        was_there = line in ways
+        if was_there or None in ways:
+            way = ways.index(line if was_there else None)
+        else:
+            way = 2 * (1 - used[0]) + 1 - used[2 - used[0]]
+        ways[way] = line
+        used[0], used[1 + way // 2] = way // 2, way % 2
+        return was_there
+
+
 def counts_of(events):
     return events >> 9 & 0xFF, events >> 1 & 0xFF, events & 1
 
@@ -182,27 +202,85 @@ async def without_a_flush_lines_stay(dut):
 
 
 @cocotb.test()
-async def the_least_recently_used_line_goes(dut):
-    """Answer a lane at its first question while its line is one of the last four of the set."""
+async def a_frame_begins_when_all_lines_have_come(dut):
+    """Start it, after a flush or without, while lines are under way that no lane waits for any more."""
+    memory = Memory(dut)
+    memory.bus.latency, memory.bus.jitter = 10, 10
+    await memory.begin()
+    for number in range(24):
+        await memory.frame()
+        await memory.read(random.randrange(1, 60))
+        memory.requests = [[None] * SLOTS for _ in range(memory.lanes)]
+        drive(dut, flush_i=number % 4 > 0)
+        await memory.read(random.randrange(1, 12), stop=True)
+        drive(dut, flush_i=0)
+        await memory.frame()
+        assert not any(memory.bus.lines)
+        if number % 4:
+            memory.fill()
+        await memory.read(40)
+        await memory.drain()
+
+
+@cocotb.test()
+async def a_line_is_read_from_the_bus_once(dut):
+    """Lanes ask for the same few lines, one after the other; the bus is asked for those, in this order."""
     memory = Memory(dut)
     await memory.begin()
     await memory.frame()
-    memory.counts, lines_before = [0, 0, 0], len(memory.bus.addresses)
+    wanted = []
+    for block in random.sample(range(1, BLOCKS), 8):
+        wanted.append(memory.base + 32 * (block + 1))
+        for lane in random.sample(range(memory.lanes), memory.lanes):
+            while not await memory.ask(lane, block):
+                assert len(memory.bus.addresses) <= len(wanted)
+            assert memory.bus.addresses == wanted
+
+
+@cocotb.test()
+async def lines_of_a_set_are_read_while_one_comes(dut):
+    """Answer at once for the lines that stay, whichever way of the set the line that comes is to take."""
+    memory = Memory(dut)
+    memory.bus.latency = 80
+    await memory.begin()
+    await memory.frame()
+    for lane in range(memory.lanes):
+        ways = []
+        for block in range(20 * lane, 20 * lane + 18, 2):  # of one set; none of another lane
+            assert not await memory.ask(lane, block)
+            ways = ways[-3:]
+            for other in ways:
+                assert await memory.ask(lane, other)
+            while not await memory.ask(lane, block):
+                pass
+            ways.append(block)
+
+
+@cocotb.test()
+async def the_least_recently_used_line_goes(dut):
+    """Answer a lane at its first question while its line is one of the last four of the set; the L2 has its own."""
+    memory = Memory(dut)
+    await memory.begin()
+    await memory.frame()
+    memory.counts, addresses, shared = [0, 0, 0], [], SharedLines(1 << int(dut.L2SetBits.value))
     total = misses = 0
     used = [[[], []] for _ in range(memory.lanes)]
     for _ in range(400):
-        lane, block = random.randrange(memory.lanes), random.randrange(12)
+        lane, block = random.randrange(memory.lanes), random.choice([random.randrange(12), random.randrange(30)])
         recent, questions = used[lane][block % 2], 1
         while not await memory.ask(lane, block):
             questions += 1
             assert questions < 100
         assert (questions == 1) == (block in recent)
+        if questions > 1 and not shared.holds(block):
+            addresses.append(memory.base + 32 * (block + 1))
+        assert memory.bus.addresses == addresses
         total, misses = total + questions, misses + (questions > 1)
         if block in recent:
             recent.remove(block)
         recent.append(block)
         del recent[:-4]
-    assert memory.counts == [total, misses, len(memory.bus.addresses) - lines_before]
+    assert memory.counts == [total, misses, len(addresses)]
 
 
 @cocotb.test()

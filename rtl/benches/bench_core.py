@@ -6,9 +6,10 @@ import random
 import cocotb
 import numpy as np
 from cocotb.triggers import ClockCycles, RisingEdge
+from cocotb.utils import get_sim_time
 from core_driver import CAMERA, COLOURS, MIRRORS, scene, started
 from oracles.memory import words_of
-from oracles.ray import directions, render
+from oracles.ray import directions, readings, render
 from oracles.shading import Shader, shaded_pixel
 from voxrt_registers import REGISTERS
 
@@ -58,12 +59,22 @@ async def counters_and_identity(dut):
     voxels = scene(2)
     await core.load(words_of(voxels))
     await core.set_frame(CAMERA, 20, 10, 3)
-    await core.write("control", start=1)
-    await core.wait()
     _, material, _ = render(voxels, CAMERA, 20, 10, COLOURS)
-    assert await core.read("rays", "value") == 200
-    assert await core.read("hits", "value") == (material > 0).sum()
-    assert 0 < await core.read("words_read", "value") <= await core.read("cycles", "value") * int(dut.Lanes.value)
+    words = words_of(voxels)
+    rays = directions(CAMERA, 20, 10).reshape(-1, 3)
+    wanted = sum(len(readings(words, 3, CAMERA[0], direction)) for direction in rays)
+    for idle in (0, 30, 9):  # clocks between words of the stream that are taken
+        core.ready = itertools.cycle([1, *[0] * idle])
+        before = get_sim_time("ns")
+        await core.trace(20, 10)
+        clocks = (get_sim_time("ns") - before) / 10
+        cycles, stalls = await core.read("cycles", "value"), await core.read("stalls", "value")
+        assert wanted / int(dut.Lanes.value) < cycles < clocks
+        assert (stalls > 0) == (idle > 0)
+        assert stalls < cycles
+        assert await core.read("rays", "value") == 200
+        assert await core.read("hits", "value") == (material > 0).sum()
+        assert await core.read("words_read", "value") == wanted
     assert await core.read("status", "busy") == 0
     for error in ("direction_overflow", "bad_pointer", "step_limit"):
         assert await core.read("status", error) == 0
@@ -165,49 +176,6 @@ async def reset_at_any_clock(dut):
 
 
 @cocotb.test()
-@cocotb.parametrize(reset=["soft", "pin"])
-async def one_clock_of_reset(dut, reset):
-    """Reset for one clock, at each phase of the lanes' rings; three frames after it are whole.
-
-    A frame has more rays per lane than a lane has rows for their weights, so that each row is used again.
-    """
-    voxels = scene(11)
-    core = await started(dut, voxels)
-    features = {name for name in ("light", "mirrors") if await core.read("features", name)}
-    shading = {"light": {"light": (-40, 200, 30), "ambient": 50}, "mirrors": {"bounces": 3, "mirrors": MIRRORS}}
-    shading = {key: value for name in features for key, value in shading[name].items()}
-    width, height = 11, 7 * int(dut.Lanes.value)
-    expected = shaded(voxels, width, height, **shading)
-
-    async def prepare():
-        await core.write_mirrors()
-        await core.set_frame(CAMERA, width, height, 3)
-        await core.set_light(shading.get("light", (0, 0, 0)))
-        await core.write("shading", light="light" in features, ambient=50, bounces=shading.get("bounces", 0))
-
-    await prepare()
-    for clocks in range(250, 266):
-        await core.write("control", start=1)
-        await ClockCycles(dut.clk_i, clocks)
-        core.dropping = True
-        if reset == "soft":
-            await core.write("control", soft_reset=1)
-        else:
-            dut.rst_ni.value = 0
-            await ClockCycles(dut.clk_i, 1)
-            dut.rst_ni.value = 1
-            await ClockCycles(dut.clk_i, 2)
-            await prepare()
-        await ClockCycles(dut.clk_i, 4)
-        core.dropping = False
-        core.words.clear()
-        await core.write("status", frame_done=1)
-        for _ in range(3):
-            np.testing.assert_array_equal(await core.trace(width, height), expected)
-        assert core.words == []
-
-
-@cocotb.test()
 @cocotb.parametrize(register=["size", "depth"])
 async def values_out_of_range_count_as_the_nearest(dut, register):
     """Width, height and depth 0, and depths above the deepest."""
@@ -241,10 +209,10 @@ async def the_processor_uses_the_memory_port_at_every_clock(dut, writes):
 
     async def use_the_port():
         dut.bram_en_i.value = 1
-        dut.bram_we_i.value = 15 if writes else 0
         for address in itertools.cycle(range(len(words))):
+            dut.bram_we_i.value = 15 if writes else random.randrange(15)  # Only whole words are written.
             dut.bram_addr_i.value = 4 * address
-            dut.bram_wrdata_i.value = int(words[address])
+            dut.bram_wrdata_i.value = int(words[address]) if writes else random.getrandbits(32)
             await RisingEdge(dut.clk_i)
 
     cycles = []
@@ -261,20 +229,37 @@ async def the_processor_uses_the_memory_port_at_every_clock(dut, writes):
 
 
 @cocotb.test()
-async def errors_stick_until_cleared(dut):
+@cocotb.parametrize((("error", "pointer"), [("step_limit", 1), ("bad_pointer", 7)]))
+async def errors_stick_until_cleared(dut, error, pointer):
     """Raise an error by a corrupt memory; the frame ends."""
     core = await started(dut)
-    await core.load([1, *[1] * 8])
+    await core.load([1, *[pointer] * 8])
     await core.set_frame(CAMERA, 8, 8, 3)
     await core.write("control", start=1)
     await core.wait()
-    assert await core.read("status", "step_limit") == 1
+    assert await core.read("status", error) == 1
     await core.load(words_of(scene(7)))
     await core.write("control", start=1)
     await core.wait()
-    assert await core.read("status", "step_limit") == 1
-    await core.write("status", step_limit=1)
-    assert await core.read("status", "step_limit") == 0
+    assert await core.read("status", error) == 1
+    await core.write("status", **{error: 1})
+    assert await core.read("status", error) == 0
+
+
+@cocotb.test()
+async def worlds_of_every_depth(dut):
+    """Octants of two levels, larger and larger, from as far as they are large; of 64 voxels per side at most."""
+    core = await started(dut)
+    for depth in range(1, min(int(dut.MaxDepth.value), 6) + 1):
+        octants = scene(20 + depth)[:4, :4, :4] if depth > 1 else np.full((2,) * 3, 2, np.uint8)
+        half = 1 << depth - 1
+        voxels = np.kron(octants, np.ones((2 * half // len(octants),) * 3, np.uint8))
+        await core.load(words_of(voxels))
+        camera = np.array([[-8 * half, 30 * half, -8 * half], *CAMERA[1:]], np.int32)
+        await core.set_frame(camera, 11, 7, depth)
+        colour, material, _ = render(voxels, camera, 11, 7, COLOURS)
+        assert (material > 0).any()
+        np.testing.assert_array_equal(await core.trace(11, 7), colour)
 
 
 @cocotb.test()
@@ -315,9 +300,15 @@ async def light_and_mirrors_written_during_a_frame_show_in_the_next(dut):
         {"flat": True},
         {"bounces": 3, "mirrors": MIRRORS},
         {"light": (70, 60, 50), "ambient": 7, "flat": True, "bounces": 15, "mirrors": MIRRORS},
-        {"light": (-40, 200, 30), "bounces": 1, "mirrors": MIRRORS},
+        {"light": (-40, -200, 30), "bounces": 1, "mirrors": MIRRORS},
         {"faces": (1, 40, 99, 255, 200, 0)},
-        {"faces": (9, 40, 255, 70, 200, 128), "light": (-40, 200, 30), "ambient": 90, "bounces": 2, "mirrors": MIRRORS},
+        {
+            "faces": (254, 215, 156, 0, 55, 255),
+            "light": (-40, 200, 30),
+            "ambient": 90,
+            "bounces": 2,
+            "mirrors": MIRRORS,
+        },
         {},
     ]
     for look, following in itertools.pairwise([{}, *looks, {}]):
@@ -331,3 +322,46 @@ async def light_and_mirrors_written_during_a_frame_show_in_the_next(dut):
         await core.wait()
         built = {name: value for name, value in look.items() if name not in FEATURES or FEATURES[name] in features}
         np.testing.assert_array_equal(core.picture(14, 11), shaded(voxels, 14, 11, **built))
+
+
+@cocotb.test()
+@cocotb.parametrize(reset=["soft", "pin"])
+async def one_clock_of_reset(dut, reset):
+    """Reset for one clock, at each phase of the lanes' rings; three frames after it are whole.
+
+    A frame has more rays per lane than a lane has rows for their weights, so that each row is used again.
+    """
+    voxels = scene(11)
+    core = await started(dut, voxels)
+    features = {name for name in ("light", "mirrors") if await core.read("features", name)}
+    shading = {"light": {"light": (-40, 200, 30), "ambient": 50}, "mirrors": {"bounces": 3, "mirrors": MIRRORS}}
+    shading = {key: value for name in features for key, value in shading[name].items()}
+    width, height = 11, 7 * int(dut.Lanes.value)
+    expected = shaded(voxels, width, height, **shading)
+
+    async def prepare():
+        await core.write_mirrors()
+        await core.set_frame(CAMERA, width, height, 3)
+        await core.set_light(shading.get("light", (0, 0, 0)))
+        await core.write("shading", light="light" in features, ambient=50, bounces=shading.get("bounces", 0))
+
+    await prepare()
+    for clocks in range(250, 266):
+        await core.write("control", start=1)
+        await ClockCycles(dut.clk_i, clocks)
+        core.dropping = True
+        if reset == "soft":
+            await core.write("control", soft_reset=1)
+        else:
+            dut.rst_ni.value = 0
+            await ClockCycles(dut.clk_i, 1)
+            dut.rst_ni.value = 1
+            await ClockCycles(dut.clk_i, 2)
+            await prepare()
+        await ClockCycles(dut.clk_i, 4)
+        core.dropping = False
+        core.words.clear()
+        await core.write("status", frame_done=1)
+        for _ in range(3):
+            np.testing.assert_array_equal(await core.trace(width, height), expected)
+        assert core.words == []

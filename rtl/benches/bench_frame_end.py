@@ -1,14 +1,13 @@
-"""The core with EndsFrames: whatever a soft reset cuts, the stream has whole frames, and offers stay. Its interrupt."""
+"""The core with EndsFrames: whatever a soft reset cuts, the stream has whole frames, and offers stay."""
 
 import itertools
 import random
 
 import cocotb
 import numpy as np
-from cocotb.triggers import ClockCycles, RisingEdge
+from cocotb.triggers import ClockCycles
 from core_driver import CAMERA, COLOURS, scene, started
 from oracles.ray import render
-from voxrt_registers import REGISTERS
 
 
 def frames_of(words, width, height):
@@ -85,33 +84,3 @@ async def frames_without_a_reset_are_as_ever(dut):
         core.ready = itertools.cycle(pattern)
         await core.set_frame(CAMERA, width, 3, 3)
         np.testing.assert_array_equal(await core.trace(width, 3), render(voxels, CAMERA, width, 3, COLOURS)[0])
-
-
-@cocotb.test()
-async def the_interrupt_is_the_status(dut):
-    """It rises with the end of a frame, and falls when the bit is cleared; errors raise it as well."""
-    voxels = scene(7)
-    core = await started(dut, voxels)
-    await core.set_frame(CAMERA, 6, 4, 3)
-    await core.write("status", frame_done=1)
-    assert not int(dut.interrupt_o.value)
-    await core.write("control", start=1)
-    while not int(dut.interrupt_o.value):
-        await RisingEdge(dut.clk_i)
-    assert await core.read("status", "frame_done")
-    assert not await core.read("status", "busy")
-    await core.write("status", frame_done=1)
-    await ClockCycles(dut.clk_i, 2)
-    assert not int(dut.interrupt_o.value)
-    # A pointer out of the memory.
-    await core.load([7])
-    await core.write("control", start=1)
-    await core.wait()
-    await core.write("status", frame_done=1)
-    await ClockCycles(dut.clk_i, 2)
-    assert int(dut.interrupt_o.value)
-    assert await core.read("status", "bad_pointer")
-    low, _ = REGISTERS["status"][1]["bad_pointer"]
-    await core.axi.write_dword(REGISTERS["status"][0], 1 << low)
-    await ClockCycles(dut.clk_i, 2)
-    assert not int(dut.interrupt_o.value)

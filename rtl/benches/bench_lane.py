@@ -14,9 +14,9 @@ import numpy as np
 from bench_brightness import ANGLE, LIGHT, MEAN, lit_point, mirrored_at
 from cocotb.triggers import ClockCycles, RisingEdge
 from oracles.memory import words_of
-from oracles.ray import FACE_NONE, shade
-from oracles.shading import Shader, shaded_pixel
-from rays import ray_of, some_direction
+from oracles.ray import FACE_NONE, first_cell, shade
+from oracles.shading import Shader, shaded_pixel, sub_cell, walk
+from rays import bits, ray_of, some_direction, tied_direction
 from streams import PACES, drive, pace, reset, start
 from structs import HIT_POINT, LIGHT_PLANES, MATERIAL_WRITE, RAY, RESULT, ROW_FREE, SHADING, WEIGHTS_WRITE, WORLD
 
@@ -25,12 +25,15 @@ MAX_DEPTH, PLACE, SUM, COUNT = 6, 10, 12, 5
 MATERIALS = (5, 9, 255)
 SHADOW_RAYS = 3
 SMALL = 8  # Voxels per side of most worlds.
+# Materials of voxels whose words are wrong, and the words that lanes read there.
+BAD_POINTER, TOO_DEEP = 77, 78
+WRONG = {BAD_POINTER: LEAF | 1 << 8, TOO_DEEP: 0}
 NOTHING = {"weights_write_i": 0, "ray_valid_i": 0, "mem_ack_i": 0, "allocate_ready_i": 0, "material_write_i": 0}
 
 
 def encoded(word):
     """Give a word as lanes read it."""
-    return LEAF | word & 0xFF if word >> 31 else word >> 3
+    return WRONG.get(word & 0xFF, LEAF | word & 0xFF) if word >> 31 else word >> 3
 
 
 def inputs(ray, row, tag, *, shadow):
@@ -63,8 +66,8 @@ class Surroundings:
         self.rays, self.shadow_rays = deque(), deque()  # That wait.
         self.free_rows = list(range(1 << len(dut.ray_row_i)))
         self.offers = False
-        self.stored, self.lit = [], {}
-        self.errors = 0
+        self.stored, self.hit_points, self.lit = [], {}, {}
+        self.errors = [0, 0]  # Bad pointers, pointers of voxels.
 
     async def run(self, sending, taking):
         dut = self.dut
@@ -91,7 +94,8 @@ class Surroundings:
             self.complete()
             self.release()
             self.order(taken and shadow)
-            self.errors += int(dut.bad_pointer_o.value) + int(dut.step_limit_o.value)
+            self.errors[0] += int(dut.bad_pointer_o.value)
+            self.errors[1] += int(dut.step_limit_o.value)
             self.answer(acknowledges)
 
     def arrive(self):
@@ -134,8 +138,11 @@ class Surroundings:
             tag, face, mirrored, place = hit["tag"], hit["face"], hit["mirrored"], hit["point"]
             assert self.stored[tag] % 4 == face
             assert hit_point(self.stored[tag]) == (place, mirrored)
+            self.hit_points[tag] = place, mirrored
             point = lit_point(place, mirrored, face, self.side)
             direction = [2 * at - own for at, own in zip(self.shader.light, point, strict=True)]
+            towards = direction[face] if mirrored >> face & 1 else -direction[face]
+            assert towards > 0, "a back face needs no shadow ray"
             self.ordered.append((ray_of(point, direction, self.side, unit=32, inside=True), tag))
 
     def answer(self, acknowledges):
@@ -192,6 +199,19 @@ def hit_point(stored):
     return place, detail >> 3 * PLACE & 7
 
 
+def exact_hit_point(voxels, position, direction):
+    """Give a hit point, 1/16 voxel, and which axes are mirrored: the point is in that frame."""
+    origin = [Fraction(place, 16) for place in position]
+    cell = [first_cell(at, d) for at, d in zip(origin, direction, strict=True)]
+    _, face, _, t = walk(voxels, origin, direction, cell)
+    crossed = [16 * (at + t * d) for at, d in zip(origin, direction, strict=True)]
+    place = [sub_cell(at, d, axis, face) for axis, (at, d) in enumerate(zip(crossed, direction, strict=True))]
+    place[face] = crossed[face]
+    mirrored = [d < 0 for d in direction]
+    last = [16 * len(voxels) - (axis != face) for axis in range(3)]
+    return [end - at if flips else at for end, at, flips in zip(last, place, mirrored, strict=True)], bits(mirrored)
+
+
 def some_world(leaves):
     """Make a world; where the lane goes into a root that is a leaf, sometimes such a one."""
     if leaves and random.random() < 0.1:
@@ -219,6 +239,11 @@ def some_place(side):
     ]
 
 
+def beside():
+    """Give how far before a wall a light is, 1/16 voxel; or, below 0, behind it."""
+    return random.randint(*random.choice([(0, 16), (0, 16), (-16, 0)]))
+
+
 def into_the_world(position, side):
     """Make a direction from there to somewhere in the world."""
     return [random.randint(0, 16 * side) - place for place in position]
@@ -227,6 +252,8 @@ def into_the_world(position, side):
 async def some_shader(dut, side):
     """Set what a frame's shading is, of what is built in; give the same to the oracle."""
     palette = [[random.choice([0, 255, random.randrange(256)]) for _ in range(3)] for _ in range(256)]
+    for material in MATERIALS:  # A black one would hide its light.
+        palette[material][random.randrange(3)] = 255
     faces = tuple(random.randrange(256) for _ in range(6)) if random.random() < 0.5 else None
     shader = Shader(palette, flat=random.random() < 0.3, faces=faces)
     if int(dut.Mirrors.value):
@@ -284,11 +311,17 @@ async def trace(dut, scene, sending, taking, **hurry):
         runner.cancel()
     drive(dut, ray_valid_i=0)
     assert len(surroundings.lit) == len(rays)
+    errors = [0, 0]
     for tag, (ray, direction) in enumerate(zip(rays, directions, strict=True)):
         background = tuple(shader.palette[0]), 0, FACE_NONE
         wanted = background if ray.overflow else shaded_pixel(voxels, shader, position, direction)
+        if wanted[1] in WRONG:
+            errors[wanted[1] == TOO_DEEP] += 1
+            wanted = background
         assert surroundings.pixel(tag, direction) == wanted, (position, direction)
-    assert not surroundings.errors
+        if tag in surroundings.hit_points and not shader.bounces:
+            assert surroundings.hit_points[tag] == exact_hit_point(voxels, position, direction)
+    assert surroundings.errors == errors
     assert len(surroundings.free_rows) == 1 << len(dut.ray_row_i)
 
 
@@ -309,6 +342,54 @@ async def pixels_of_all_levels(dut):
     await begin(dut)
     for _ in range(6):
         await frame(dut, 60, "always", "random", deep=True)
+
+
+@cocotb.test()
+async def pixels_of_tied_planes(dut):
+    """Rays of all lengths that cross planes at once, in worlds of all sizes."""
+    await begin(dut)
+    for side in (2, 4, SMALL, *[1 << MAX_DEPTH] * 7):
+        cells = min(side, SMALL)
+        voxels = np.kron(some_world(leaves=False)[:cells, :cells, :cells], np.ones((side // cells,) * 3, np.uint8))
+        position = some_place(side)
+        directions = [tied_direction(position, side, apart=side // cells) for _ in range(60)]
+        await trace(dut, (voxels, await some_shader(dut, side), position, directions), "always", "always")
+
+
+@cocotb.test()
+async def rooms_with_a_lamp(dut):
+    """Rays from within a room to its walls; shadow rays pass the light, and hit what is behind it.
+
+    The light is in the middle, or near walls: before them, or behind.
+    """
+    await begin(dut)
+    for side in [SMALL, 1 << MAX_DEPTH] * 3 if int(dut.Light.value) else []:
+        walls = [[side // SMALL * plane for plane in sorted(random.sample(range(SMALL + 1), 2))] for _ in range(3)]
+        voxels = np.full((side,) * 3, MATERIALS[-1], np.uint8)
+        voxels[tuple(slice(*pair) for pair in walls)] = 0
+        position = [random.randint(16 * low, 16 * high) for low, high in walls]
+        light = [random.choice([16 * low + beside(), 16 * high - beside(), 8 * (low + high)]) for low, high in walls]
+        shader = await some_shader(dut, side)
+        set_light(dut, side, shader, light)
+        drive(dut, shading_i=SHADING.pack(light=1, bounces=shader.bounces))
+        directions = [into_the_world(position, side) for _ in range(60)]
+        await trace(dut, (voxels, shader, position, directions), "always", "always")
+
+
+@cocotb.test()
+async def wrong_words_end_rays(dut):
+    """Count pointers that were refused, and pointers of voxels; rays that read one show the background."""
+    await begin(dut)
+    for _ in range(3):
+        voxels = some_world(leaves=False)
+        voxels[::2, ::2, ::2] = 0
+        corners = np.random.default_rng(random.randrange(1 << 30)).choice([0, 0, *MATERIALS, *WRONG], (SMALL // 2,) * 3)
+        voxels[1::2, 1::2, 1::2] = corners
+        shader, position = await some_shader(dut, SMALL), some_place(SMALL)
+        shader.light, shader.bounces = None, 0
+        drive(dut, shading_i=0)
+        directions = [into_the_world(position, SMALL) for _ in range(60)]
+        await trace(dut, (voxels, shader, position, directions), "random", "random")
 
 
 @cocotb.test()

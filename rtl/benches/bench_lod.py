@@ -14,12 +14,12 @@ SIZE = (9, 7)
 NUMBERS = (0, *LOADED)
 
 
-def some_scene(chance):
+def some_scene(chance, numbers=NUMBERS):
     """Make a random world with a random mean material for each block, and its words in both dialects."""
     depth = int(chance.integers(2, 4))
     voxels = chance.choice([*[0] * 12, 1, 2, 255], (1 << depth,) * 3).astype(np.uint8)
     words = words_of(voxels)
-    means = chance.choice(NUMBERS, len(words) // 8).astype(np.uint8)
+    means = chance.choice(numbers, len(words) // 8).astype(np.uint8)
     leaves = words >> 31 == 1
     return depth, words, means, np.where(leaves, words, words >> 3 << 8 | means[np.where(leaves, 0, words) >> 3])
 
@@ -63,15 +63,42 @@ async def pixels_are_the_oracles(dut):
         await core.load(lod_words)
         assert await read_back(dut, 9) == lod_words[:9].tolist()
         await core.set_frame(camera, *SIZE, depth)
-        await core.write("control", start=1)
-        await core.wait()
-        expected = np.zeros((SIZE[1], SIZE[0], 3), np.uint8)
-        for (row, column), direction in zip(
-            np.ndindex(SIZE[1], SIZE[0]), ray.directions(camera, *SIZE).reshape(-1, 3), strict=True
-        ):
-            material, face = lod.trace((words, means, depth), camera[0], direction, scale)
-            expected[row, column] = ray.shade(COLOURS[material], direction, face)
-        np.testing.assert_array_equal(core.picture(*SIZE), expected)
+        await compare(core, (words, means, depth), camera, scale)
+
+
+async def compare(core, memory, camera, scale):
+    """Trace a frame; compare its pixels with the oracle's."""
+    await core.write("control", start=1)
+    await core.wait()
+    expected = np.zeros((SIZE[1], SIZE[0], 3), np.uint8)
+    for (row, column), direction in zip(
+        np.ndindex(SIZE[1], SIZE[0]), ray.directions(camera, *SIZE).reshape(-1, 3), strict=True
+    ):
+        material, face = lod.trace(memory, camera[0], direction, scale)
+        expected[row, column] = ray.shade(COLOURS[material], direction, face)
+    np.testing.assert_array_equal(core.picture(*SIZE), expected)
+
+
+@cocotb.test()
+async def rays_stop_at_their_reach_along_any_axis(dut):
+    """Cells are about as far along two axes or three, and some are just at the reach."""
+    chance = np.random.default_rng(7)
+    core = Core(dut)
+    await core.start()
+    for _ in range(16):
+        depth, words, means, lod_words = some_scene(chance, LOADED)
+        reach, sides = int(chance.integers(1, 5)), chance.integers(0, 2, 3)
+        away = 2 * reach - int(chance.integers(0, 3))  # of cells of 2 voxels, some are at the reach
+        places = [-16 * (away + int(chance.integers(0, 2))) + int(chance.integers(0, 16)) for _ in range(3)]
+        position = np.where(sides, (16 << depth) - np.array(places), places)
+        look = np.where(sides, -90, 90) + chance.integers(-9, 10, 3)
+        camera = np.array([position, look, chance.integers(-9, 10, 3), chance.integers(-9, 10, 3)], np.int32)
+        largest = int(np.abs(ray.directions(camera, *SIZE)).max())
+        scale = ((reach - 1) << 20) // largest + 1
+        await core.write("lod", words=1, scale=scale)
+        await core.load(lod_words)
+        await core.set_frame(camera, *SIZE, depth)
+        await compare(core, (words, means, depth), camera, scale)
 
 
 @cocotb.test()
@@ -85,12 +112,4 @@ async def words_of_the_report_dialect_stop_no_ray(dut):
     await core.write("lod", words=0, scale=1)
     await core.load(words)
     await core.set_frame(camera, *SIZE, depth)
-    await core.write("control", start=1)
-    await core.wait()
-    expected = np.zeros((SIZE[1], SIZE[0], 3), np.uint8)
-    for (row, column), direction in zip(
-        np.ndindex(SIZE[1], SIZE[0]), ray.directions(camera, *SIZE).reshape(-1, 3), strict=True
-    ):
-        material, face = lod.trace((words, [], depth), camera[0], direction, 0)
-        expected[row, column] = ray.shade(COLOURS[material], direction, face)
-    np.testing.assert_array_equal(core.picture(*SIZE), expected)
+    await compare(core, (words, [], depth), camera, 0)

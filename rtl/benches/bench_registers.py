@@ -1,12 +1,12 @@
-"""The registers against registers.rdl's own map: resets, masks, byte strobes, and what cannot be written."""
+"""The registers against registers.rdl's own map: resets, masks, byte strobes, what cannot be written. The interrupt."""
 
 import random
 import re
 
 import cocotb
-from cocotb.triggers import ClockCycles
+from cocotb.triggers import ClockCycles, RisingEdge
 from cocotbext.axi import AxiResp
-from core_driver import started
+from core_driver import CAMERA, scene, started
 from run import GENERATED, SEED
 from voxrt_registers import MATERIALS, REGISTERS
 
@@ -145,3 +145,33 @@ async def a_reset_brings_the_resets_back(dut):
     await ClockCycles(dut.clk_i, 3)
     assert await core.read("size", "width") == 640
     assert await core.read("size", "height") == 480
+
+
+@cocotb.test()
+async def the_interrupt_is_the_status(dut):
+    """It rises with the end of a frame, and falls when the bit is cleared; errors raise it as well."""
+    voxels = scene(7)
+    core = await started(dut, voxels)
+    await core.set_frame(CAMERA, 6, 4, 3)
+    await core.write("status", frame_done=1)
+    assert not int(dut.interrupt_o.value)
+    await core.write("control", start=1)
+    while not int(dut.interrupt_o.value):
+        await RisingEdge(dut.clk_i)
+    assert await core.read("status", "frame_done")
+    assert not await core.read("status", "busy")
+    await core.write("status", frame_done=1)
+    await ClockCycles(dut.clk_i, 2)
+    assert not int(dut.interrupt_o.value)
+    # A pointer out of the memory.
+    await core.load([7])
+    await core.write("control", start=1)
+    await core.wait()
+    await core.write("status", frame_done=1)
+    await ClockCycles(dut.clk_i, 2)
+    assert int(dut.interrupt_o.value)
+    assert await core.read("status", "bad_pointer")
+    low, _ = REGISTERS["status"][1]["bad_pointer"]
+    await core.axi.write_dword(REGISTERS["status"][0], 1 << low)
+    await ClockCycles(dut.clk_i, 2)
+    assert not int(dut.interrupt_o.value)

@@ -67,6 +67,19 @@ def aimed_direction(position, side):
     """Make a direction from a position, 1/16 voxel, to a point in the world, or near its planes and edges."""
     near = random.randint(-1, 1)
     aims = [random.choice([near, 16 * side + near, random.randint(0, 16 * side)]) for _ in range(3)]
+    return some_length(position, aims)
+
+
+def tied_direction(position, side, *, apart=1):
+    """Make a direction from a position through a point where two or three planes meet, as many voxels apart."""
+    aims = [16 * apart * random.randint(0, side // apart) for _ in range(3)]
+    if random.random() < 0.7:
+        aims[random.randrange(3)] = random.randint(0, 16 * side)
+    return some_length(position, aims)
+
+
+def some_length(position, aims):
+    """Make a direction from a position to another, of any length that is allowed."""
     way = [aim - place for aim, place in zip(aims, position, strict=True)]
     longest = max(map(abs, way)) or 1
     scale = random.choice([1, (OVERFLOW - 1) // longest, random.randint(1, (OVERFLOW - 1) // longest)])
