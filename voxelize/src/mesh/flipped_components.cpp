@@ -13,6 +13,7 @@ namespace {
 
 constexpr uint32_t kNoComponent = 0xFFFF'FFFF, kNoVertex = 0xFFFF'FFFF;
 constexpr size_t kFewComponents = 512; // up to so many are compared pair by pair
+constexpr double kCracks = 1e-5;       // the share of openings in the area of a surface that rounding leaves open
 constexpr size_t kBatch = 16;          // triangles per query
 
 /// Seen from above, on which side of uv q lies. A q on the line is moved by an infinitesimal along x, then y
@@ -109,6 +110,18 @@ public:
                 return false;
             in = in || component.volume6 < 0;
             out = out || component.volume6 > 0 || component.capped;
+        }
+        return in && out;
+    }
+
+    /// Whether one that all but closes faces inwards beside others that face outwards.
+    bool are_unsure() const {
+        if (caps_ == nullptr || !caps_->shell_only.empty() || caps_->opening > kCracks)
+            return false;
+        bool in = false, out = false;
+        for (const Component& component : components_) {
+            in = in || (component.capped && component.volume6 < 0);
+            out = out || component.volume6 > 0;
         }
         return in && out;
     }
@@ -416,6 +429,12 @@ FlippedComponents flip_components(const MeshView& mesh, const std::vector<Vertex
         return {orientation, false};
     components.split();
     const bool has_flat = components.has_flat();
+    if (components.are_unsure()) {
+        auto unsure = orientation ? std::make_shared<Orientation>(*orientation) : std::make_shared<Orientation>();
+        unsure->faces.resize(mesh.triangle_count());
+        ++unsure->unsure;
+        return {std::move(unsure), has_flat};
+    }
     if (!components.are_mixed())
         return {orientation, has_flat};
     components.orient();
