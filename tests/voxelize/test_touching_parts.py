@@ -83,7 +83,7 @@ def test_parts_that_share_an_edge(first, second, inside_out):
         assert (voxels > 1024, warned) == (True, {"inward-parts": 1})
     else:
         assert voxels == 1024
-        assert set(warned) == {"turned-faces"}
+        assert set(warned) == {"turned-pieces"}
 
 
 @pytest.mark.parametrize("inside_out", [0, 1])

@@ -11,7 +11,7 @@ import msgspec
 
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.authored_properties import explain
-from voxrt.voxelize.formats.external_files import ALLOW_OUTSIDE, ExternalFiles, refuse_pointer
+from voxrt.voxelize.formats.external_files import ALLOW_OUTSIDE, LFS_POINTER, ExternalFiles, refuse_pointer
 from voxrt.voxelize.formats.gltf.container import read_container
 from voxrt.voxelize.formats.gltf.extensions import MESHOPT
 from voxrt.voxelize.formats.gltf.meshopt import CompressedView, decode
@@ -123,7 +123,7 @@ class Document:
         buffer = self.gltf.buffers[index]
         here = f"buffers[{index}]"
         if buffer.uri is not None:
-            found = self.resource(buffer.uri, f"{here}.uri", buffer.byte_length)
+            found = self.resource(buffer.uri, f"{here}.uri", max(buffer.byte_length, len(LFS_POINTER)))
             if found is None:
                 problem = f"no file {buffer.uri[:60]!r} in the asset's folder"
                 raise self.error(f"{here}.uri", problem, "put it there, or embed it in a .glb")

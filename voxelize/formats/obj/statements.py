@@ -149,6 +149,11 @@ def _attribute_rows(
     return numbers, counts, rows, (numbers != 0) & ((rows < 0) | (rows >= np.count_nonzero(is_attribute)))
 
 
+_WITHOUT_COLOUR = (
+    "vertices have no colour, beside others that have one: they count as white; faces of such alone keep their material"
+)
+
+
 def _vertices(
     text: Text, lines: NDArray[np.int64], log: WarningLog
 ) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
@@ -163,6 +168,7 @@ def _vertices(
     coloured = counts >= 6
     colours = None
     if coloured.any():
+        log.add("vertex-colour", _WITHOUT_COLOUR, int((~coloured).sum()))
         colours = np.ones((len(counts), 3))
         # Numbers four to six, as in MeshLab, Blender, three.js and tinyobjloader; what follows differs between them.
         colours[coloured] = values[begins[coloured, None] + np.arange(3, 6)]

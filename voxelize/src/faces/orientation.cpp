@@ -1,10 +1,9 @@
 #include "orientation.h"
 
-#include "../work/disjoint_sets.h"
 #include "closed_surface.h"
 #include "edge_order.h"
 #include "exact_predicates.h"
-#include "patches.h"
+#include "patch_signs.h"
 #include "sheets.h"
 
 namespace voxrt::voxelize {
@@ -21,21 +20,6 @@ constexpr uint32_t back(uint32_t face) { return 2 * face + 1; }
 constexpr uint32_t first_side(const EdgeUse& use) { return use.is_upwards ? back(use.face) : front(use.face); }
 constexpr uint32_t last_side(const EdgeUse& use) { return use.is_upwards ? front(use.face) : back(use.face); }
 
-/// Calls visit(first, again) for each face at an edge that has the corners of an earlier one.
-template <class Visit> void each_repeated(Uses uses, std::vector<EdgeUse>& sorted, Visit&& visit) {
-    if (uses.size() < 2 || (uses.size() == 2 && uses[0].opposite != uses[1].opposite))
-        return;
-    sorted.assign(uses.begin(), uses.end());
-    std::sort(sorted.begin(), sorted.end(), [](const EdgeUse& a, const EdgeUse& b) {
-        return a.opposite != b.opposite ? a.opposite < b.opposite : a.face < b.face;
-    });
-    for (size_t i = 1, first = 0; i < sorted.size(); ++i)
-        if (sorted[i].opposite == sorted[first].opposite)
-            visit(sorted[first], sorted[i]);
-        else
-            first = i;
-}
-
 /// How many more faces walk an edge upwards.
 int surplus_of(Uses uses) {
     int sum = 0;
@@ -51,14 +35,10 @@ bool is_pair(Uses uses) { return uses.size() == 2 && surplus_of(uses) == 0; }
 struct Component {
     bool is_balanced = true;       // each edge is walked as often one way as the other, and no face contradicts another
     bool is_doubted = false;       // it may have two sides that are one
-    bool in_front_of_it = false;   // faces that have the outside in front of them, as authored
-    bool behind_it = false;        // and behind
-    bool contradicts = false;      // it has both, though it is balanced
     bool is_two_sided = false;     // a face that is there once for each side parts inside from outside
     bool is_paired = true;         // each face is there as often for each side, and its pieces have two sides
     uint32_t outside = UINT32_MAX; // a cell
     int128 least = 0;              // its volume
-    int128 authored = 0;           // the signed volume that the file says
     int64_t kept = 0, turned = 0;  // faces that part inside from outside: as authored, the other way around
     double enclosing_area = 0, loose_area = 0;
     bool is_settled() const { return outside != UINT32_MAX && kept + turned > 0 && (!is_balanced || is_two_sided); }
@@ -68,13 +48,10 @@ struct Component {
 
 class Faces {
 public:
-    Faces(const MeshEdges& whole, const MeshEdges& edges, const std::vector<Vertex>& vertices, bool flat)
-        : whole_(whole), edges_(edges), at_(vertices), flat_(flat), count_(uint32_t(edges.face_count())),
-          connected_(count_) {
-        edges_.each([&](uint32_t, Uses uses) {
-            for (const EdgeUse& use : uses)
-                connected_.merge(use.face, uses[0].face);
-        });
+    Faces(const MeshEdges& whole, const MeshEdges& edges, const Bodies& bodies, const std::vector<Vertex>& vertices,
+          bool flat)
+        : whole_(whole), edges_(edges), bodies_(bodies), at_(vertices), flat_(flat),
+          count_(uint32_t(edges.face_count())), first_(bodies.first()) {
         component_of_.assign(count_, UINT32_MAX);
     }
 
@@ -83,13 +60,12 @@ public:
         find_repeated();
         join_sides();
         find_outsides();
-        find_contradictions();
-        find_voids();
         find_two_sided();
         tell_inside();
         auto found = std::make_shared<Orientation>();
         found->faces.assign(count_, 0);
         settle(*found);
+        look(*found);
         turn_loose(*found);
         for (uint32_t f = 0; f < count_; ++f)
             if (first_[f] != f && is_ours(f) && changes(own(f))) {
@@ -101,13 +77,13 @@ public:
             }
         const bool any =
             std::any_of(found->faces.begin(), found->faces.end(), [](uint8_t state) { return state != 0; });
-        return any || found->one_sided > 0 ? found : nullptr;
+        return any || found->one_sided > 0 || found->unsure > 0 ? found : nullptr;
     }
 
 private:
     /// Finds the components that are not wound consistently or have repeated faces.
     void find_components() {
-        edges_.each([&](uint32_t, Uses uses) {
+        bodies_.each_edge(edges_, [&](uint32_t, Uses uses) {
             const bool balanced = uses.size() == 1 || surplus_of(uses) == 0;
             if (!balanced || uses.size() > 2) {
                 Component& component = found_at(uses[0].face);
@@ -121,28 +97,27 @@ private:
         });
     }
     Component& found_at(uint32_t face) {
-        uint32_t& index = component_of_[connected_.find(face)];
+        uint32_t& index = component_of_[bodies_.of(face)];
         if (index == UINT32_MAX) {
             index = uint32_t(components_.size());
             components_.emplace_back();
         }
         return components_[index];
     }
-    bool is_ours(uint32_t face) { return component_of_[connected_.find(face)] != UINT32_MAX; }
-    Component& own(uint32_t face) { return components_[component_of_[connected_.find(face)]]; }
+    bool is_ours(uint32_t face) { return component_of_[bodies_.of(face)] != UINT32_MAX; }
+    Component& own(uint32_t face) { return components_[component_of_[bodies_.of(face)]]; }
     static bool changes(const Component& component) { return component.is_settled() || component.is_unsaid(); }
 
-    /// For each face the first one with the same corners, and whether that one is wound the other way.
+    /// Whether faces are wound against the first ones with the same corners.
     void find_repeated() {
-        first_.resize(count_);
-        std::iota(first_.begin(), first_.end(), 0u);
+        std::vector<bool> is_known(count_, false);
         opposed_.assign(count_, false);
         surplus_.assign(count_, 1);
         whole_.each([&](uint32_t, Uses uses) {
             each_repeated(uses, sorted_, [&](const EdgeUse& first, const EdgeUse& again) {
-                if (first_[again.face] != again.face)
+                if (is_known[again.face])
                     return;
-                first_[again.face] = first.face;
+                is_known[again.face] = true;
                 opposed_[again.face] = first.is_upwards != again.is_upwards;
                 surplus_[first.face] += opposed_[again.face] ? -1 : 1;
             });
@@ -160,7 +135,7 @@ private:
 
     /// Calls visit(low, uses) for the edges of our components, without repeated faces.
     template <class Visit> void each_edge(Visit&& visit) {
-        edges_.each([&](uint32_t low, Uses uses) {
+        bodies_.each_edge(edges_, [&](uint32_t low, Uses uses) {
             if (is_ours(uses[0].face))
                 visit(low, once_of(uses));
         });
@@ -186,10 +161,9 @@ private:
     /// Finds the cell of least volume in each component.
     void find_outsides() {
         volumes_.assign(2 * size_t(count_), 0);
-        each_first([&](uint32_t f, Component& component) {
-            const Corners c = edges_.corners(f), origin = edges_.corners(connected_.find(f));
+        each_first([&](uint32_t f, Component&) {
+            const Corners c = edges_.corners(f), origin = edges_.corners(bodies_.of(f));
             const int128 volume = volume6_of(at_[c[0]], at_[c[1]], at_[c[2]], at_[origin[0]]);
-            component.authored += surplus_[f] * volume;
             volumes_[cells_.find(back(f))] += volume;
             volumes_[cells_.find(front(f))] -= volume;
         });
@@ -199,65 +173,6 @@ private:
                     component.least = volumes_[cell];
                     component.outside = cell;
                 }
-        });
-    }
-
-    /// Finds balanced components of which some faces have the outside in front of them, and others have it behind:
-    /// parts that meet at edges, of which some are inside out.
-    void find_contradictions() {
-        is_void_.assign(2 * size_t(count_), false);
-        each_first([&](uint32_t f, Component& component) {
-            const bool outside_in_front = !is_inside(front(f), component);
-            if (surplus_[f] == 0 || outside_in_front != is_inside(back(f), component))
-                return;
-            (outside_in_front == (surplus_[f] > 0) ? component.in_front_of_it : component.behind_it) = true;
-        });
-        // Where all parts face outwards, the file says no less volume than the cells of the inside have.
-        for (Component& c : components_)
-            c.contradicts =
-                c.is_balanced && c.in_front_of_it && c.behind_it && c.authored < -c.least - (-c.least >> 20);
-        if (std::any_of(components_.begin(), components_.end(), [](const Component& c) { return c.contradicts; }))
-            deny_contradictions();
-        for (Component& component : components_)
-            component.is_balanced &= !component.contradicts;
-    }
-
-    /// Rounding may put faces at an edge in a wrong order, which a patch that faces outwards shows.
-    void deny_contradictions() {
-        Patches patches(
-            edges_, at_, [this](auto&& visit) { each_edge(visit); },
-            [this](auto&& visit) { each_first([&](uint32_t f, Component&) { visit(f); }); });
-        each_first([&](uint32_t f, Component& component) {
-            const int side = is_inside(back(f), component) - is_inside(front(f), component);
-            component.contradicts &= patches.facing_of(f) * side >= 0;
-        });
-    }
-
-    /// Finds cells that such parts enclose together and that are in none of them: an even number of faces is between
-    /// one and the outside, on any way, and most of its faces have it in front of them.
-    void find_voids() {
-        if (std::none_of(components_.begin(), components_.end(), [](const Component& c) { return c.contradicts; }))
-            return;
-        DisjointSets parities(4 * size_t(count_)); // of cells: the cell, the opposite
-        std::vector<double> faced(2 * size_t(count_), 0);
-        each_first([&](uint32_t f, Component& component) {
-            if (!component.contradicts)
-                return;
-            const uint32_t ahead = cells_.find(front(f)), behind = cells_.find(back(f));
-            const uint32_t odd = uint32_t(surplus_[f]) & 1;
-            parities.merge(2 * ahead, 2 * behind + odd);
-            parities.merge(2 * ahead + 1, 2 * behind + 1 - odd);
-            const double area = surplus_[f] * area_of(f);
-            faced[ahead] += area;
-            faced[behind] -= area;
-        });
-        each_first([&](uint32_t f, Component& component) {
-            if (!component.contradicts)
-                return;
-            for (const uint32_t cell : {cells_.find(front(f)), cells_.find(back(f))})
-                is_void_[cell] = cell != component.outside && volumes_[cell] > 0 && faced[cell] > 0 &&
-                                 parities.find(2 * cell) == parities.find(2 * component.outside) &&
-                                 parities.find(2 * cell) != parities.find(2 * cell + 1);
         });
     }
 
@@ -302,7 +217,8 @@ private:
             if (!component.is_settled())
                 return;
             const bool in_front = is_inside(front(f), component), behind = is_inside(back(f), component);
-            const bool inwards = component.turned > component.kept;
+            // It may be the wall of a cavity where the file clearly says so.
+            const bool inwards = component.turned > 2 * component.kept;
             bool reversed = in_front != inwards;
             uint8_t state = Orientation::kSettled;
             if (in_front != behind) {
@@ -317,6 +233,50 @@ private:
             }
             found.faces[f] = uint8_t(state | (reversed ? Orientation::kReversed : 0));
         });
+    }
+
+    /// Corrects components of several patches that do not count as one sees them from outside.
+    void look(Orientation& found) {
+        std::vector<BodyPatches> bodies;
+        for (const Component& component : components_)
+            bodies.emplace_back(component.is_balanced && (component.kept > 0) != (component.turned > 0));
+        const auto patches_of = [&](const Component& component) -> BodyPatches& {
+            return bodies[size_t(&component - components_.data())];
+        };
+        each_first([&](uint32_t f, Component& component) {
+            const Corners c = edges_.corners(f);
+            const uint32_t ahead = pieces_.find(front(f)), behind = pieces_.find(back(f));
+            if (ahead == behind)
+                patches_of(component).leave_out(); // it has one side only
+            patches_of(component).add({f,
+                                       std::min(ahead, behind),
+                                       ahead < behind ? 1 : -1,
+                                       counted(f, found),
+                                       {at_[c[0]], at_[c[1]], at_[c[2]]}});
+        });
+        each_edge([&](uint32_t, const std::vector<EdgeUse>& uses) {
+            const Component& component = own(uses[0].face);
+            if (uses.size() == 1 && !component.is_settled())
+                patches_of(component).leave_out(); // open, and wound as the file says
+            else if (uses.size() != 2)
+                patches_of(component).add_edge(uses);
+        });
+        for (size_t i = 0; i < bodies.size(); ++i) {
+            const PatchSigns signs = bodies[i].look();
+            found.unsure += !signs.are_sure;
+            for (const auto& [f, sign] : signs.by_face) {
+                found.turned += (sign < 0) - (found.is_reversed(f) && !found.is_uncounted(f));
+                found.faces[f] = uint8_t(Orientation::kSettled | (sign == 0 ? Orientation::kUncounted : 0) |
+                                         (sign < 0 ? Orientation::kReversed : 0));
+                components_[i].is_balanced = false;
+                components_[i].kept = 1;
+            }
+        }
+    }
+
+    /// How often a face counts as authored; less where it counts the other way around.
+    int counted(uint32_t f, const Orientation& found) const {
+        return found.faces[f] == 0 ? surplus_[f] : found.is_uncounted(f) ? 0 : found.is_reversed(f) ? -1 : 1;
     }
 
     /// Turns the faces of the other pieces as most of each are.
@@ -345,10 +305,7 @@ private:
             found.faces[f] = Orientation::kReversed;
     }
 
-    bool is_inside(uint32_t side, const Component& component) {
-        const uint32_t cell = cells_.find(side);
-        return cell != component.outside && !is_void_[cell];
-    }
+    bool is_inside(uint32_t side, const Component& component) { return cells_.find(side) != component.outside; }
 
     /// Calls visit(face, component) for the faces of our components, those with edges, each once.
     template <class Visit> void each_first(Visit&& visit) {
@@ -369,33 +326,32 @@ private:
     }
 
     const MeshEdges &whole_, &edges_;
+    const Bodies& bodies_;
     const std::vector<Vertex>& at_;
     bool flat_;
     uint32_t count_;
-    DisjointSets connected_;
     std::vector<uint32_t> component_of_; // by the first face of a component; UINT32_MAX where all is consistent
     std::vector<Component> components_;
-    std::vector<uint32_t> first_;
+    const std::vector<uint32_t>& first_;
     std::vector<bool> opposed_;
     std::vector<EdgeUse> sorted_;
     std::vector<int> surplus_; // of a face and those equal to it: how many more face as it does
     DisjointSets pieces_{0}, cells_{0};
     std::vector<int128> volumes_; // of cells, by side
-    std::vector<bool> is_void_;   // likewise
     std::vector<EdgeUse> once_;
 };
 
 } // namespace
 
 std::shared_ptr<const Orientation> find_orientation(const MeshEdges& whole, const MeshEdges& edges,
-                                                    const std::vector<Vertex>& vertices, bool flat) {
+                                                    const Bodies& bodies, const std::vector<Vertex>& vertices,
+                                                    bool flat) {
     bool consistent = true;
-    edges.each([&](uint32_t, Uses uses) { consistent = consistent && (uses.size() == 1 || is_pair(uses)); });
-    std::vector<EdgeUse> sorted;
-    whole.each([&](uint32_t, Uses uses) {
-        each_repeated(uses, sorted, [&](const EdgeUse&, const EdgeUse&) { consistent = false; });
-    });
-    return consistent ? nullptr : Faces(whole, edges, vertices, flat).orient();
+    bodies.each_edge(edges,
+                     [&](uint32_t, Uses uses) { consistent = consistent && (uses.size() == 1 || is_pair(uses)); });
+    for (uint32_t f = 0; f < edges.face_count(); ++f)
+        consistent = consistent && bodies.first()[f] == f;
+    return consistent ? nullptr : Faces(whole, edges, bodies, vertices, flat).orient();
 }
 
 } // namespace voxrt::voxelize

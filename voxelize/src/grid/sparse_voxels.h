@@ -37,7 +37,7 @@ enum ObjectNote : std::size_t {
     kTurnedFaces,       // triangles that were wound against those beside them
     kOneSidedPieces,    // that cannot be wound consistently, like a Klein bottle
     kMostlyFilled,      // 1: its open parts have more inside than shell
-    kInwardParts,       // 1: winding numbers above and below 0 were met
+    kInwardParts,       // not 0: winding numbers above and below 0 were met, or bodies may count wrongly
     kObjectNotes
 };
 using ObjectNotes = std::array<std::int64_t, kObjectNotes>; // how often each was met

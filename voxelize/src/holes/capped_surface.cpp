@@ -28,17 +28,17 @@ Point area(const Point& a, const Point& b, const Point& c) {
 double length(const Point& a) { return std::hypot(a.x, a.y, a.z); }
 
 /// Whether a face belongs to the surface whose holes are sought.
-bool is_sought(const Orientation* orientation, size_t face) {
-    return orientation == nullptr || !orientation->is_settled(face);
+bool is_sought(const Bodies& bodies, const Orientation* orientation, size_t face) {
+    return !bodies.closes(uint32_t(face)) && (orientation == nullptr || !orientation->is_settled(face));
 }
 
 /// The boundary edges, sorted by first vertex.
-std::vector<BoundaryEdge> boundary_of(const MeshEdges& edges, const Orientation* orientation) {
+std::vector<BoundaryEdge> boundary_of(const MeshEdges& edges, const Bodies& bodies, const Orientation* orientation) {
     std::vector<BoundaryEdge> boundary;
     edges.each([&](uint32_t low, std::span<const EdgeUse> uses) {
         int sum = 0, count = 0;
         for (const EdgeUse& use : uses)
-            if (is_sought(orientation, use.face)) {
+            if (is_sought(bodies, orientation, use.face)) {
                 sum += use.is_upwards == (orientation != nullptr && orientation->is_reversed(use.face)) ? -1 : 1;
                 ++count;
             }
@@ -53,13 +53,39 @@ std::vector<BoundaryEdge> boundary_of(const MeshEdges& edges, const Orientation*
     return boundary;
 }
 
+/// Closes the seams of bodies that close over cut edges: between an edge and the vertices on it is a crack as narrow as
+/// rounding.
+void close_seams(const MeshEdges& edges, const std::vector<EdgeCut>& cuts, const Bodies& bodies,
+                 const Orientation* orientation, HoleCaps& found) {
+    auto cut = cuts.begin();
+    edges.each([&](uint32_t low, std::span<const EdgeUse> uses) {
+        if (cut == cuts.end() || cut->low != low || cut->high != uses[0].high)
+            return;
+        int sum = 0;
+        for (const EdgeUse& use : uses)
+            if (bodies.closes(use.face))
+                sum += counted_upwards(orientation, use);
+        std::vector<uint32_t> loop{cut->low};
+        loop.insert(loop.end(), cut->at.begin(), cut->at.end());
+        loop.push_back(cut->high);
+        if (sum > 0)
+            std::reverse(loop.begin(), loop.end());
+        for (int i = 0; i < std::abs(sum); ++i)
+            close_loop(loop, found.triangles);
+        ++cut;
+    });
+    found.seams = found.triangles.size();
+}
+
 /// A mesh with its boundary loops, by connected component.
 class Components {
 public:
-    Components(const MeshEdges& edges, const Orientation* orientation, const std::vector<Point>& points, Fill fill)
-        : automatic_(fill == Fill::automatic), edges_(edges), orientation_(orientation), points_(points),
-          sets_(points.size()), loops_(cut_into_loops(boundary_of(edges, orientation), points.size())),
-          area_(points.size(), 0), opening_(points.size(), 0), openings_(points.size(), 0) {
+    Components(const MeshEdges& edges, const Bodies& bodies, const Orientation* orientation,
+               const std::vector<Point>& points, Fill fill)
+        : automatic_(fill == Fill::automatic), edges_(edges), bodies_(bodies), orientation_(orientation),
+          points_(points), sets_(points.size()),
+          loops_(cut_into_loops(boundary_of(edges, bodies, orientation), points.size())), area_(points.size(), 0),
+          opening_(points.size(), 0), openings_(points.size(), 0) {
         each_face([&](const Corners& face) {
             count_work(5);
             sets_.merge(face[0], face[1]);
@@ -128,12 +154,13 @@ private:
     /// Calls visit(corners) for each face of the surface whose holes are sought.
     template <class Visit> void each_face(Visit&& visit) const {
         for (size_t t = 0; t < edges_.face_count(); ++t)
-            if (is_sought(orientation_, t))
+            if (is_sought(bodies_, orientation_, t))
                 visit(edges_.corners(t));
     }
 
     bool automatic_;
     const MeshEdges& edges_;
+    const Bodies& bodies_;
     const Orientation* orientation_;
     const std::vector<Point>& points_;
     DisjointSets sets_;
@@ -144,10 +171,11 @@ private:
 
 } // namespace
 
-HoleCaps find_hole_caps(const MeshEdges& edges, const Orientation* orientation, const std::vector<Point>& points,
-                        Fill fill) {
-    Components components(edges, orientation, points, fill);
+HoleCaps find_hole_caps(const MeshEdges& edges, const std::vector<EdgeCut>& cuts, const Bodies& bodies,
+                        const Orientation* orientation, const std::vector<Point>& points, Fill fill) {
+    Components components(edges, bodies, orientation, points, fill);
     HoleCaps found;
+    close_seams(edges, cuts, bodies, orientation, found);
     bool any_open = false;
     for (const auto& loop : components.loops())
         any_open = any_open || components.is_open(loop.vertices[0]);
@@ -157,7 +185,7 @@ HoleCaps find_hole_caps(const MeshEdges& edges, const Orientation* orientation, 
             found.has_open_enclosure = enclosure.highest > kEnclosure;
             found.shell_only.resize(edges.face_count());
             for (size_t t = 0; t < edges.face_count(); ++t)
-                found.shell_only[t] = is_sought(orientation, t) && components.is_open(edges.corners(t)[0]);
+                found.shell_only[t] = is_sought(bodies, orientation, t) && components.is_open(edges.corners(t)[0]);
         }
     }
     for (const auto& loop : components.loops())

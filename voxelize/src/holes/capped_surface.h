@@ -23,6 +23,7 @@ namespace voxrt::voxelize {
 /// What closes a mesh.
 struct HoleCaps {
     std::vector<std::array<uint32_t, 3>> triangles; // vertices of the mesh
+    size_t seams = 0;                               // so many of them, the first ones, close the seams of bodies
     std::vector<uint8_t> shell_only; // by triangle of the mesh: 1 in an open component; empty where none is
     double opening = 0; // the largest share of its area that the loops of a filled component, closed, have together
     bool has_open_enclosure = false; // an open component encloses space, as a room without a front does
@@ -31,9 +32,10 @@ struct HoleCaps {
     bool are_seams() const { return shell_only.empty() && opening < 1e-6; }
 };
 
+/// `edges`: not cut. `cuts`: of them, in their order. `bodies`: with a note which of them close over cut edges.
 /// `points`: a position per vertex. `orientation`: null where all faces are as the file says. Linear in the faces.
-HoleCaps find_hole_caps(const MeshEdges& edges, const Orientation* orientation, const std::vector<Point>& points,
-                        Fill fill);
+HoleCaps find_hole_caps(const MeshEdges& edges, const std::vector<EdgeCut>& cuts, const Bodies& bodies,
+                        const Orientation* orientation, const std::vector<Point>& points, Fill fill);
 
 /// A mesh part and its caps in grid space.
 struct CappedSurface {

@@ -13,6 +13,7 @@ namespace {
 
 constexpr uint32_t kNoComponent = 0xFFFF'FFFF, kNoVertex = 0xFFFF'FFFF;
 constexpr size_t kFewComponents = 512; // up to so many are compared pair by pair
+constexpr double kCracks = 1e-5;       // the share of openings in the area of a surface that rounding leaves open
 constexpr size_t kBatch = 16;          // triangles per query
 
 /// Seen from above, on which side of uv q lies. A q on the line is moved by an infinitesimal along x, then y
@@ -58,12 +59,11 @@ struct Component {
 class ClosedComponents {
 public:
     ClosedComponents(const MeshView& mesh, const std::vector<Vertex>& vertices, const Orientation* orientation,
-                     const HoleCaps* caps, const MeshEdges* edges)
-        : mesh_(mesh), vertices_(vertices), orientation_(orientation), caps_(caps),
-          by_edges_(edges != nullptr && (caps == nullptr || caps->are_seams())),
-          sets_(by_edges_ ? mesh.triangle_count() : vertices.size()) {
-        if (by_edges_)
-            join_at(*edges);
+                     const HoleCaps* caps, const MeshEdges* edges, const Bodies* bodies)
+        : mesh_(mesh), vertices_(vertices), orientation_(orientation), caps_(caps), bodies_(bodies),
+          sets_(bodies != nullptr ? count() : vertices.size()) {
+        if (bodies != nullptr)
+            join_bodies(*edges);
         else
             join_at_vertices();
     }
@@ -73,7 +73,7 @@ public:
 
     /// Finds the components.
     void split() {
-        if (!by_edges_)
+        if (bodies_ == nullptr)
             weld();
         std::vector<uint32_t> component_at(std::max(vertices_.size(), count()), kNoComponent);
         std::vector<uint32_t> seen(vertices_.size(), kNoComponent);
@@ -83,14 +83,14 @@ public:
                 continue;
             count_work(5);
             const Corners c = corners(t);
-            uint32_t& component = component_at[sets_.find(by_edges_ ? uint32_t(t) : c[0])];
+            uint32_t& component = component_at[sets_.find(bodies_ != nullptr ? uint32_t(t) : c[0])];
             if (component == kNoComponent) {
                 component = uint32_t(components_.size());
                 components_.emplace_back();
             }
             component_of_[t] = component;
             Component& own = components_[component];
-            own.capped = own.capped || (t >= mesh_.triangle_count() && !caps_->are_seams());
+            own.capped = own.capped || !is_of_body(t);
             for (const uint32_t v : c) {
                 own.box.add(vertices_[v]);
                 if (seen[v] != component)
@@ -100,8 +100,6 @@ public:
             own.triangles.push_back(uint32_t(t));
             own.volume6 += volume6_of(vertices_[c[0]], vertices_[c[1]], vertices_[c[2]], vertices_[own.vertices[0]]);
         }
-        for (const uint32_t face : open_faces_)
-            components_[component_of_[face]].capped = true;
     }
 
     /// Whether some component faces inwards and may be flipped, while others face outwards.
@@ -112,6 +110,18 @@ public:
                 return false;
             in = in || component.volume6 < 0;
             out = out || component.volume6 > 0 || component.capped;
+        }
+        return in && out;
+    }
+
+    /// Whether one that all but closes faces inwards beside others that face outwards.
+    bool are_unsure() const {
+        if (caps_ == nullptr || !caps_->shell_only.empty() || caps_->opening > kCracks)
+            return false;
+        bool in = false, out = false;
+        for (const Component& component : components_) {
+            in = in || (component.capped && component.volume6 < 0);
+            out = out || component.volume6 > 0;
         }
         return in && out;
     }
@@ -187,24 +197,28 @@ private:
             }
         is_one_ = joins + 1 >= vertices_.size();
     }
-    /// Parts that touch at a vertex alone stay apart.
-    void join_at(const MeshEdges& edges) {
+    /// Bodies that close stay apart where they touch others; what remains is joined at vertices.
+    void join_bodies(const MeshEdges& edges) {
         size_t joins = 0, faces = 0;
-        edges.each([&](uint32_t, std::span<const EdgeUse> uses) {
-            uint32_t first = kNoComponent;
-            int surplus = 0;
+        bodies_->each_edge(edges, [&](uint32_t, std::span<const EdgeUse> uses) {
+            uint32_t last = kNoComponent;
             for (const EdgeUse& use : uses)
                 if (is_closed_part(use.face)) {
-                    joins += first != kNoComponent && sets_.merge(first, use.face);
-                    first = use.face;
-                    const bool is_reversed = orientation_ != nullptr && orientation_->is_reversed(use.face);
-                    surplus += (use.is_upwards != 0) == is_reversed ? -1 : 1;
+                    joins += last != kNoComponent && sets_.merge(last, use.face);
+                    last = use.face;
                 }
-            if (surplus != 0)
-                open_faces_.push_back(first);
         });
-        for (size_t t = 0; t < mesh_.triangle_count(); ++t)
-            faces += is_closed_part(t);
+        std::vector<uint32_t> at(vertices_.size(), kNoComponent); // a triangle at each vertex
+        for (size_t t = 0; t < count(); ++t)
+            if (is_closed_part(t)) {
+                ++faces;
+                for (const uint32_t v : t < mesh_.triangle_count() ? edges.corners(t) : corners(t)) {
+                    if (is_of_body(t))
+                        continue;
+                    joins += at[v] != kNoComponent && sets_.merge(at[v], uint32_t(t));
+                    at[v] = uint32_t(t);
+                }
+            }
         is_one_ = joins + 1 >= faces;
     }
 
@@ -235,9 +249,13 @@ private:
     /// Whether a triangle belongs to what closes: not to an open component.
     bool is_closed_part(size_t t) const {
         if (t >= mesh_.triangle_count())
-            return !by_edges_; // the caps of seams have no area
+            return t - mesh_.triangle_count() >= caps_->seams; // those have no area
         return (orientation_ == nullptr || !orientation_->is_uncounted(t)) &&
                (caps_ == nullptr || caps_->shell_only.empty() || caps_->shell_only[t] == 0);
+    }
+    /// Whether a triangle is of a body that closes without caps.
+    bool is_of_body(size_t t) const {
+        return bodies_ == nullptr || (t < mesh_.triangle_count() && bodies_->closes(uint32_t(t)));
     }
     Corners corners(size_t t) const {
         if (t >= mesh_.triangle_count())
@@ -393,9 +411,8 @@ private:
     const std::vector<Vertex>& vertices_;
     const Orientation* orientation_;
     const HoleCaps* caps_;
-    bool by_edges_;
-    DisjointSets sets_;                // of vertices, or of faces
-    std::vector<uint32_t> open_faces_; // by edges: of components that do not close
+    const Bodies* bodies_; // null where the surface is a manifold
+    DisjointSets sets_;    // of vertices; of triangles where there are bodies
     bool is_one_;
     std::vector<uint32_t> component_of_; // by triangle
     std::vector<Component> components_;  // by first triangle
@@ -406,12 +423,18 @@ private:
 
 FlippedComponents flip_components(const MeshView& mesh, const std::vector<Vertex>& vertices,
                                   std::shared_ptr<const Orientation> orientation, const HoleCaps* caps,
-                                  const MeshEdges* edges) {
-    ClosedComponents components(mesh, vertices, orientation.get(), caps, edges);
+                                  const MeshEdges* edges, const Bodies* bodies) {
+    ClosedComponents components(mesh, vertices, orientation.get(), caps, edges, bodies);
     if (components.is_one())
         return {orientation, false};
     components.split();
     const bool has_flat = components.has_flat();
+    if (components.are_unsure()) {
+        auto unsure = orientation ? std::make_shared<Orientation>(*orientation) : std::make_shared<Orientation>();
+        unsure->faces.resize(mesh.triangle_count());
+        ++unsure->unsure;
+        return {std::move(unsure), has_flat};
+    }
     if (!components.are_mixed())
         return {orientation, has_flat};
     components.orient();

@@ -19,14 +19,14 @@ namespace voxrt::voxelize {
 ///
 /// `vertices`: a position per vertex, in grid space or in any finer lattice. `caps`: what closes the surface, or null
 /// where it closes by itself. Components with caps that are more than seams are never flipped, nor are others beside
-/// such a one that is inside out. Caps stay as they are: they are to be found anew. `edges`: of the mesh, cut; null
-/// where nobody needed them, so that parts that touch at a vertex alone are one component.
+/// such a one that is inside out. Caps stay as they are: they are to be found anew. `edges`: of the mesh, cut, with
+/// its bodies; null where nobody needed them, so that parts that touch at a vertex alone are one component.
 struct FlippedComponents {
     std::shared_ptr<const Orientation> orientation;
     bool has_flat; // of several components one has no volume
 };
 FlippedComponents flip_components(const MeshView& mesh, const std::vector<Vertex>& vertices,
                                   std::shared_ptr<const Orientation> orientation, const HoleCaps* caps,
-                                  const MeshEdges* edges);
+                                  const MeshEdges* edges, const Bodies* bodies);
 
 } // namespace voxrt::voxelize

@@ -3,7 +3,7 @@
 #include "../faces/closed_surface.h"
 #include "../faces/manifold.h"
 #include "../work/interrupt.h"
-#include "cut_edges.h"
+#include "edge_cuts.h"
 
 #include <functional>
 #include <optional>
@@ -81,8 +81,7 @@ bool closes(const MeshEdges& edges, const Orientation& orientation) {
     edges.each([&](uint32_t, std::span<const EdgeUse> uses) {
         int sum = 0;
         for (const EdgeUse& use : uses)
-            if (!orientation.is_uncounted(use.face))
-                sum += use.is_upwards == orientation.is_reversed(use.face) ? -1 : 1;
+            sum += counted_upwards(&orientation, use);
         closed = closed && sum == 0;
     });
     return closed;
@@ -95,11 +94,18 @@ Enclosed find_enclosed(const MeshView& mesh, const TriangleSums& sums, double bo
                        Fill fill) {
     Enclosed found{sums.boundary == 0, sums.volume6, nullptr, nullptr};
     std::optional<MeshEdges> edges, cut;
+    std::optional<Bodies> bodies;
+    std::vector<EdgeCut> cuts;
     const auto orient = [&](bool flat) {
         edges.emplace(mesh, weld(keys));
-        if (std::optional<MeshEdges> found_cut = cut_edges(*edges, vertices))
-            cut.emplace(std::move(*found_cut));
-        found.orientation = find_orientation(*edges, cut ? *cut : *edges, vertices, flat);
+        cuts = find_cuts(*edges, vertices);
+        if (!cuts.empty())
+            cut.emplace(*edges, cuts);
+        bodies.emplace(*edges, cut ? *cut : *edges);
+        found.orientation = find_orientation(*edges, cut ? *cut : *edges, *bodies, vertices, flat);
+        if (found.orientation || !found.closed)
+            bodies->note_closed(cut ? *cut : *edges,
+                                [&](const EdgeUse& use) { return counted_upwards(found.orientation.get(), use); });
         if (found.orientation) {
             found.closed = closes(*edges, *found.orientation);
             found.volume6 = volume6_of(mesh, points(), *found.orientation);
@@ -110,15 +116,16 @@ Enclosed find_enclosed(const MeshView& mesh, const TriangleSums& sums, double bo
         if (!found.closed && !fills(fill))
             return false;
         const auto cap_holes = [&] {
-            found.hole_caps =
-                std::make_shared<const HoleCaps>(find_hole_caps(*edges, found.orientation.get(), points(), fill));
+            found.hole_caps = std::make_shared<const HoleCaps>(
+                find_hole_caps(*edges, cuts, *bodies, found.orientation.get(), points(), fill));
         };
         if (!found.closed)
             cap_holes();
         FlippedComponents flipped = flip_components(mesh, vertices, found.orientation, found.hole_caps.get(),
                                                     cut     ? &*cut
                                                     : edges ? &*edges
-                                                            : nullptr);
+                                                            : nullptr,
+                                                    bodies ? &*bodies : nullptr);
         const bool are_flipped = flipped.orientation != found.orientation;
         found.orientation = std::move(flipped.orientation);
         if (are_flipped && found.hole_caps && found.hole_caps->are_seams())

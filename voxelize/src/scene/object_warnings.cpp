@@ -65,8 +65,8 @@ std::vector<ObjectWarning> object_warnings(const VoxelizedObjects& objects) {
     if (inward > 0)
         warnings.push_back(
             {"inward-parts",
-             "objects have parts that face inwards and touch or cross others, and were not turned: such "
-             "parts may be a voxel too large, and hollow where they cross others; recalculate the normals",
+             "objects have parts that face inwards, or are turned in a way that does not show their inside, where they "
+             "touch or cross others: such parts may be hollow, or a voxel too large; recalculate the normals",
              inward});
     if (one_sided > 0)
         warnings.push_back({"one-sided",

@@ -81,11 +81,12 @@ void report_objects(const std::vector<PartView>& parts, const TriangleBins& bins
             notes[kFlippedComponents] += mesh.orientation->components;
             notes[kTurnedFaces] += mesh.orientation->turned;
             notes[kOneSidedPieces] += mesh.orientation->one_sided;
+            notes[kInwardParts] += mesh.orientation->unsure;
         }
     }
     for (size_t i = 0; i < objects; ++i) {
         out.object_modes[i] = uint8_t(object_mode(fill_of[i], found[i]));
-        out.object_notes[i][kInwardParts] = tallies[i].positive != 0 && tallies[i].negative != 0;
+        out.object_notes[i][kInwardParts] += tallies[i].positive != 0 && tallies[i].negative != 0;
         out.object_notes[i][kMostlyFilled] = tallies[i].inside_of_open > tallies[i].shell_of_open;
     }
 }

@@ -25,9 +25,12 @@ def with_uri(folder, uri):
     return path, bytes(writer.data)
 
 
-def test_a_buffer_that_git_lfs_keeps_elsewhere_is_named(tmp_path):
+@pytest.mark.parametrize("size", [None, 1000])
+def test_a_buffer_that_git_lfs_keeps_elsewhere_is_named(size, tmp_path):
     path, data = with_uri(tmp_path, "data.bin")
-    path.write_text(path.read_text().replace(f'"byteLength": {len(data)}, "uri"', '"byteLength": 1000, "uri"'))
+    assert len(data) < 40  # less than a pointer needs to be known
+    if size is not None:
+        path.write_text(path.read_text().replace(f'"byteLength": {len(data)}, "uri"', f'"byteLength": {size}, "uri"'))
     (tmp_path / "data.bin").write_text("version https://git-lfs.github.com/spec/v1\nsize 1\n")
     with pytest.raises(AssetError, match=r"buffers\[0\]\.uri: is a Git LFS pointer.*; run: git lfs pull"):
         load(path)

@@ -118,6 +118,7 @@ def test_faces_without_colour_keep_their_material(obj):
     (one,) = scene.objects
     assert [scene.materials[number].colour for number in one.mesh.materials] == [BLUE, GREEN]
     assert one.mesh.appearance is None
+    assert kinds(scene)["vertex-colour"] == 3
 
 
 def test_negative_texture_numbers(obj):

@@ -1,4 +1,4 @@
-#include "cut_edges.h"
+#include "edge_cuts.h"
 
 #include "../faces/exact_predicates.h"
 #include "triangle_bvh.h"
@@ -129,21 +129,26 @@ void add_cut(std::vector<EdgeCut>& cuts, uint32_t low, std::span<const EdgeUse> 
         cuts.push_back({low, uses[0].high, std::move(at)});
 }
 
-/// Whether each edge is walked as often one way as the other, edges of one face left out.
-bool is_balanced(const MeshEdges& edges) {
-    bool balanced = true;
+struct Balance {
+    bool is_balanced = true; // each edge is walked as often one way as the other, edges of one face left out
+    size_t odd = 0;          // edges of an odd number of faces
+};
+
+Balance balance_of(const MeshEdges& edges) {
+    Balance found;
     edges.each([&](uint32_t, std::span<const EdgeUse> uses) {
         int sum = 0;
         for (const EdgeUse& use : uses)
             sum += use.is_upwards ? 1 : -1;
-        balanced = balanced && (sum == 0 || uses.size() == 1);
+        found.is_balanced = found.is_balanced && (sum == 0 || uses.size() == 1);
+        found.odd += uses.size() % 2;
     });
-    return balanced;
+    return found;
 }
 
 } // namespace
 
-std::optional<MeshEdges> cut_edges(const MeshEdges& edges, const std::vector<Vertex>& vertices) {
+std::vector<EdgeCut> find_cuts(const MeshEdges& edges, const std::vector<Vertex>& vertices) {
     std::vector<bool> is_end(vertices.size(), false), is_used(vertices.size(), false);
     TriangleBox whole;
     edges.each([&](uint32_t low, std::span<const EdgeUse> uses) {
@@ -165,27 +170,35 @@ std::optional<MeshEdges> cut_edges(const MeshEdges& edges, const std::vector<Ver
             add_cut(cuts, low, uses, ends.on(low, uses[0].high));
     });
     if (cuts.empty())
-        return std::nullopt;
-    MeshEdges some(edges, cuts);
+        return cuts;
     // Where parts meet, faces of two may pair along a seam by chance.
-    VerticesOnEdges all(vertices, is_used, kExactly);
-    auto cut = cuts.begin();
-    std::vector<EdgeCut> more;
-    edges.each([&](uint32_t low, std::span<const EdgeUse> uses) {
-        std::vector<uint32_t> at = all.on(low, uses[0].high);
-        for (const EdgeUse& use : uses)
-            std::erase(at, use.opposite);
-        if (cut != cuts.end() && cut->low == low && cut->high == uses[0].high) {
-            if (cut->at.size() > at.size())
-                at = cut->at;
-            ++cut;
-        }
-        add_cut(more, low, uses, std::move(at));
-    });
-    MeshEdges most(edges, more);
-    if (is_balanced(most))
-        return std::optional<MeshEdges>(std::move(most));
-    return is_balanced(edges) ? std::nullopt : std::optional<MeshEdges>(std::move(some));
+    const auto cut_all = [&](double near) {
+        VerticesOnEdges all(vertices, is_used, near);
+        auto cut = cuts.begin();
+        std::vector<EdgeCut> more;
+        edges.each([&](uint32_t low, std::span<const EdgeUse> uses) {
+            std::vector<uint32_t> at = all.on(low, uses[0].high);
+            for (const EdgeUse& use : uses)
+                std::erase(at, use.opposite);
+            if (cut != cuts.end() && cut->low == low && cut->high == uses[0].high) {
+                if (cut->at.size() > at.size())
+                    at = cut->at;
+                ++cut;
+            }
+            add_cut(more, low, uses, std::move(at));
+        });
+        return more;
+    };
+    std::vector<EdgeCut> near = cut_all(room);
+    const Balance of_near = balance_of(MeshEdges(edges, near));
+    if (of_near.is_balanced)
+        return near;
+    std::vector<EdgeCut> exact = cut_all(kExactly);
+    if (balance_of(MeshEdges(edges, exact)).is_balanced)
+        return exact;
+    if (balance_of(edges).is_balanced)
+        return {};
+    return of_near.odd <= balance_of(MeshEdges(edges, cuts)).odd ? near : cuts;
 }
 
 } // namespace voxrt::voxelize

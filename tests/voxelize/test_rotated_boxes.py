@@ -1,0 +1,102 @@
+"""Boxes in float32, rotated, glued at faces, edges and seams or crossing, some inside out or with turned faces.
+
+Rounding puts faces that were meant to lie upon one another slightly apart, or through each other. The voxels are those
+of all boxes: a voxel has to be solid where it meets a box that is smaller by some units of rounding, and empty where it
+does not meet one that is larger by as much.
+"""
+
+import numpy as np
+import pytest
+from oracles.voxels import dense
+
+import voxrt
+from voxrt.voxelize import Grid, voxelize
+
+DEPTH = 5
+SIDE = 2**DEPTH
+QUADS = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+
+
+def rotation(rng):
+    matrix, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+    return matrix * np.sign(np.linalg.det(matrix))
+
+
+def box(low, high, rng, cuts):
+    """Return corners and triangles of a box, and the number of the side of each; sides are cut each for itself."""
+    corners = np.array([[(low, high)[i >> 2][0], (low, high)[i >> 1 & 1][1], (low, high)[i & 1][2]] for i in range(8)])
+    positions, triangles, sides = [], [], []
+    for number, quad in enumerate(QUADS):
+        a, b, _, d = (corners[vertex].astype(float) for vertex in quad)
+        lengths = [int(np.abs(end - a).sum()) for end in (b, d)]
+        u, v = ([0, *(i / n for i in range(1, n) if rng.random() < cuts), 1] for n in lengths)
+        for i, j in np.ndindex(len(u) - 1, len(v) - 1):
+            start = len(positions)
+            ends = ((u[i], v[j]), (u[i + 1], v[j]), (u[i + 1], v[j + 1]), (u[i], v[j + 1]))
+            positions += [a + s * (b - a) + t * (d - a) for s, t in ends]
+            pair = [[0, 1, 2], [0, 2, 3]] if rng.random() < 0.5 else [[0, 1, 3], [1, 2, 3]]
+            triangles += [[start + corner for corner in triangle] for triangle in pair]
+            sides += [number, number]
+    return np.array(positions), np.array(triangles), np.array(sides)
+
+
+def placed(rng, side, crossing):
+    """Return the lowest and highest corners of boxes on a lattice that touch, or cross where they may."""
+    boxes = []
+    taken = np.zeros((side,) * 3, bool)
+    for _ in range(200):
+        low = rng.integers(0, side, 3)
+        high = np.minimum(low + rng.integers(1, side // 2 + 1, 3), side)
+        place = tuple(slice(*ends) for ends in zip(low, high, strict=True))
+        near = taken[tuple(slice(max(0, a - 1), b + 1) for a, b in zip(low, high, strict=True))].any()
+        nested = any(
+            (np.maximum(a, low) == low).all() and (np.minimum(b, high) == high).all() for a, b in boxes
+        ) or any((np.maximum(a, low) == a).all() and (np.minimum(b, high) == b).all() for a, b in boxes)
+        if len(boxes) < 6 and (not boxes or near) and not nested and (crossing or not taken[place].any()):
+            taken[place] = True
+            boxes.append((low, high))
+    return boxes
+
+
+def turned(triangles, sides, rng, how):
+    if how == "parts":
+        return triangles[:, ::-1] if rng.random() < 0.4 else triangles
+    faces = rng.random(6)[sides] < 0.3 if how == "sides" else rng.random(len(sides)) < 0.3
+    return np.where(faces[:, None], triangles[:, ::-1], triangles)
+
+
+def meets(boxes, matrix, grid, margin):
+    """Tell which voxels meet a box that is larger by `margin` voxels: separating axes."""
+    cells = np.stack(np.meshgrid(*(np.arange(SIDE) + 0.5,) * 3, indexing="ij"), -1)
+    axes = [*np.eye(3), *matrix.T, *(np.cross(a, b) for a in np.eye(3) for b in matrix.T)]
+    found = np.zeros((SIDE,) * 3, bool)
+    for low, high in boxes:
+        centre = ((low + high) / 2 @ matrix.T - grid.origin) / grid.voxel_size
+        half = (high - low) / 2 / grid.voxel_size + margin
+        overlap = np.ones_like(found)
+        for axis in (axis / np.linalg.norm(axis) for axis in axes if np.linalg.norm(axis) > 1e-9):
+            reach = np.abs(axis).sum() / 2 + half @ np.abs(matrix.T @ axis)
+            overlap &= np.abs((cells - centre) @ axis) < reach
+        found |= overlap
+    return found
+
+
+@pytest.mark.parametrize("how", ["parts", "sides", "faces"])
+@pytest.mark.parametrize("crossing", [False, True])
+@pytest.mark.parametrize("seed", range(16))
+def test_rotated_boxes_are_their_union(seed, crossing, how):
+    rng = np.random.default_rng([seed, crossing])
+    side, cuts = rng.choice([4, 8, 16]), rng.choice([0, 0.2])
+    boxes, matrix = placed(rng, side, crossing), rotation(rng)
+    parts = [box(low, high, rng, cuts) for low, high in boxes]
+    starts = np.cumsum([0, *(len(part[0]) for part in parts[:-1])])
+    positions = np.concatenate([part[0] for part in parts]) @ matrix.T
+    triangles = np.concatenate(
+        [turned(own, sides, rng, how) + start for (_, own, sides), start in zip(parts, starts, strict=True)]
+    )
+    positions = positions.astype(np.float32)
+    low, high = positions.min(0).astype(float), positions.max(0).astype(float)
+    grid = Grid(DEPTH, tuple(low), (high - low).max() / SIDE)
+    solid = dense(voxelize(voxrt.mesh_scene(positions, triangles), grid).voxels) != 0
+    assert not (meets(boxes, matrix, grid, -0.002) & ~solid).any()
+    assert not (solid & ~meets(boxes, matrix, grid, 0.002)).any()
