@@ -24,8 +24,9 @@ LEFT_OUT_ENDS = ("_avx2.cpp", "_avx512.cpp", "_bindings.cpp")
 # Folders and files of what runs once per mesh or memory, or by rules that few ask for, and the largest files: a small
 # page matters more than their speed.
 COMPILED_SMALL = {"faces", "holes", "mesh", "scene", "sight", "budget", "files", "surface", "src", "rules", "colour"}
-COMPILED_SMALL |= {"build", "pool", "query", "light", "views"}
-COMPILED_SMALL |= {"exact_volume.cpp", "framing.cpp", "regions.cpp", "triangle_bins.cpp", "voxelizer.cpp"}
+COMPILED_SMALL |= {"query", "light", "views"}
+COMPILED_SMALL |= {"exact_volume.cpp", "framing.cpp", "regions.cpp", "voxelizer.cpp"}
+SMALL = ("-Os", "-Xclang", "-Oz")  # ziglang takes -Oz for -Os
 
 
 def main() -> None:
@@ -66,7 +67,7 @@ def our_units() -> list[Unit]:
     sources = [path for folder in folders for path in sorted(folder.rglob("*.cpp"))]
     sources += sorted((ROOT / "web" / "src").glob("*.cpp"))
     return [
-        Unit(source, (*flags, "-Os") if {source.parent.name, source.name} & COMPILED_SMALL else flags)
+        Unit(source, (*flags, *SMALL) if {source.parent.name, source.name} & COMPILED_SMALL else flags)
         for source in sources
         if source.name not in LEFT_OUT and not source.name.endswith(LEFT_OUT_ENDS)
     ]

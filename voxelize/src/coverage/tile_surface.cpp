@@ -39,7 +39,7 @@ void TileSurface::add_pieces(const ColumnPieces& columns, int count, int from, i
         for (int z = columns.z[i] + from, level = 0; z < end;) {
             const int slice = z & (kBrickSide - 1), count_here = std::min(end - z, kBrickSide - slice);
             ShellBrick& brick = this->at(column, z >> kBrickBits);
-            if (kHasLoneRules && notes_asked_)
+            if (notes_asked_)
                 for (uint64_t *row = &row_of(brick.asked)[size_t(slice)], *last = row + count_here; row != last; ++row)
                     *row |= uint64_t{1} << bit;
             double* at = pieces_of(brick).column(bit) + slice;

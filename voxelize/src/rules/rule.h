@@ -17,12 +17,4 @@ enum class Thin : std::uint8_t {
     drop, // nothing
 };
 
-/// Whether a single part of one material takes shorter ways (tiles/lone_rule.h). On the page it does not: the first
-/// load is to be small.
-#if defined(__wasm__)
-inline constexpr bool kHasLoneRules = false;
-#else
-inline constexpr bool kHasLoneRules = true;
-#endif
-
 } // namespace voxrt::voxelize

@@ -92,7 +92,7 @@ bool leaves_none_alone(const BrickWindow<2>& filled, const BrickWindow<2>& touch
 
 /// The voxels of a brick that belong to thin parts.
 Slices find_thin(const RuleBricks& bricks, size_t i) {
-    if (kHasLoneRules && bricks[i].is_thick)
+    if (bricks[i].is_thick)
         return {};
     const auto filled = [](const RuleBrick& b) -> const Slices& { return b.filled; };
     return thin_voxels(thin_in_column(bricks[i], {}, {}),
@@ -193,7 +193,7 @@ void keep_thin_parts(RuleBricks& bricks, const Workers& workers, std::vector<Add
             for (int z = 0; z < kBrickSide; ++z)
                 bricks[t.brick].filled[z] &= ~t.taken[z];
     }
-    if (!kHasLoneRules || added == nullptr)
+    if (added == nullptr)
         return;
     for (const ThinBrick& t : thin)
         if (const Slices left = without(t.candidates, without(t.candidates, bricks[t.brick].filled)); !is_empty(left))

@@ -17,9 +17,8 @@ inline Slices thin_in_column(const RuleBrick& brick, const Slices& below, const 
     const uint64_t filled[kBrickSide + 4] = {below[6],        below[7],        brick.filled[0], brick.filled[1],
                                              brick.filled[2], brick.filled[3], brick.filled[4], brick.filled[5],
                                              brick.filled[6], brick.filled[7], above[0],        above[1]};
-    uint64_t cubes[kBrickSide + 3] = {};             // by lowest corner, two slices further
-    constexpr size_t beside = kHasLoneRules ? 0 : 2; // slices of the other bricks, which hold something there alone
-    for (size_t z = beside; z < kBrickSide + 3 - beside; ++z) {
+    uint64_t cubes[kBrickSide + 3]; // by lowest corner, two slices further
+    for (size_t z = 0; z < kBrickSide + 3; ++z) {
         const uint64_t both = filled[z] & filled[z + 1], pairs = both & both >> 1 & ~highest;
         cubes[z] = pairs & pairs >> 8;
     }

@@ -63,8 +63,8 @@ public:
             result.voxels += tile.claim(column, k, shell, brick.material, cells, rule_ ? &claimed : nullptr);
             if (rule_)
                 rule_->add(column, k, shell, shell, claimed, object.mixed(brick));
-            if (lone())
-                lone()->add(column, k, shell, shell);
+            if (lone_)
+                lone_->add(column, k, shell, shell);
         }
         return result;
     }
@@ -133,8 +133,8 @@ private:
         count_work(20 * uint32_t(object.height()));
         ColumnWinding winding;
         const int slices = std::min(object.side(), kBrickSide);
-        const bool has_volumes = lone() ? lone()->asks_for_volumes() : rule_ && rule_->asks_for_volumes();
-        const uint64_t doubtful = has_volumes && sheets() ? columns_of(sheets()->doubtful, column) : ~uint64_t{0};
+        const bool has_volumes = lone_ ? lone_->asks_for_volumes() : rule_ && rule_->asks_for_volumes();
+        const uint64_t doubtful = has_volumes && sheets_ ? columns_of(sheets_->doubtful, column) : ~uint64_t{0};
         uint64_t summed = 0; // columns whose volume is summed in below_: the last slice had surface there
         while (k < object.height()) {
             const ShellBrick* brick = object.find(column, k);
@@ -149,7 +149,7 @@ private:
             Slices within{};
             const Slices shell = slices_of(brick->shell);
             Slices surface = has_volumes ? object.all_surface(*brick, shell) : Slices{};
-            if (has_volumes && sheets()) {
+            if (has_volumes && sheets_) {
                 const Slices asked = object.asked(*brick);
                 for (int z = 0; z < kBrickSide; ++z)
                     surface[z] = asked[z] | (surface[z] & doubtful);
@@ -159,7 +159,7 @@ private:
             const uint32_t index = object.index_of(*brick);
             const VolumePieces* pieces = brick->pieces == kNone ? nullptr : &object.pieces(brick->pieces);
             std::array<double, kBrickVoxels>* volumes = !has_volumes ? nullptr
-                                                        : lone()     ? &lone()->volumes()
+                                                        : lone_      ? &lone_->volumes()
                                                                      : &rule_->room_for_volumes(column, k);
             for (int z = 0; z < slices; ++z) {
                 // Below its surface a solid fills as many voxels as the winding number says, which has no rounding.
@@ -228,8 +228,8 @@ private:
                 result.voxels += tile.claim(column, k, mask, interior, nullptr);
                 if (rule_)
                     rule_->add(column, k, mask, {}, {});
-                if (lone())
-                    lone()->add(column, k, mask, mask);
+                if (lone_)
+                    lone_->add(column, k, mask, mask);
             }
         }
     }
@@ -294,7 +294,7 @@ private:
                 claim_run(tile, column, k, k + 1, ~uint64_t{0}, interior, result);
                 continue;
             }
-            if (mixed && (lone() || (rule_ && !rule_->fills_all()))) {
+            if (mixed && (lone_ || (rule_ && !rule_->fills_all()))) {
                 const Slices holds = inside_.inside_at_surface(column, k, surface, numbers_);
                 for (int z = 0; z < kBrickSide; ++z)
                     within[z] |= holds[z];
@@ -320,7 +320,7 @@ private:
         result.inside += count(hidden);
         if (is_empty(mask))
             return;
-        if (lone()) {
+        if (lone_) {
             const Slices filled = lone_filled(column, k, shell, mask, hidden, within, object, brick);
             if (!is_empty(filled))
                 result.voxels += tile.claim(column, k, filled, interior, nullptr);
@@ -348,15 +348,15 @@ private:
     Slices lone_filled(int column, int k, const Slices& shell, const Slices& touched, const Slices& hidden,
                        const Slices& within, const TileSurface& object, const ShellBrick& brick) {
         const Slices held = object.held(brick), on = object.on_centres(brick);
-        const bool by_volume = lone()->asks_for_volumes() && !is_capped_;
+        const bool by_volume = lone_->asks_for_volumes() && !is_capped_;
         Slices filled, voxels;
         for (int z = 0; z < kBrickSide; ++z) {
-            voxels[z] = !by_volume ? 0 : sheets() ? shell[z] & summed_voxels_[z] : shell[z];
+            voxels[z] = !by_volume ? 0 : sheets_ ? shell[z] & summed_voxels_[z] : shell[z];
             filled[z] = (hidden[z] | held[z] | ((within[z] | on[z]) & ~voxels[z])) & touched[z];
         }
         if (!is_empty(voxels))
-            lone()->fill_halves(column, k, voxels, touched, filled);
-        lone()->add(column, k, touched, filled);
+            lone_->fill_halves(column, k, voxels, touched, filled);
+        lone_->add(column, k, touched, filled);
         return filled;
     }
 
@@ -385,9 +385,6 @@ private:
             if (it->z == z)
                 winding.add(it->enters ? uint64_t{1} << it->bit : 0, it->enters ? 0 : uint64_t{1} << it->bit);
     }
-
-    LoneRule* lone() const { return kHasLoneRules ? lone_ : nullptr; }
-    const ColumnSheets* sheets() const { return kHasLoneRules ? sheets_ : nullptr; }
 
     RuleTile* rule_ = nullptr;
     LoneRule* lone_ = nullptr;

@@ -53,7 +53,7 @@ public:
                     const std::array<int, 3> voxel{x0 + u, y0 + v, doubt.k * kBrickSide + z};
                     ExactSum sum;
                     const auto add = [&](uint32_t part) { add_exact_volume(part, voxel, near, column, sum); };
-                    if (kHasLoneRules && rule == nullptr)
+                    if (rule == nullptr)
                         add(0);
                     else
                         rule->for_each_summand(doubt, z, bit, add);

@@ -19,31 +19,23 @@ namespace voxrt::voxelize {
 /// pinholes do not.
 inline constexpr double kNotedOpening = 0.01;
 
-/// Owns what there is for lone rules alone.
-struct DeleteLone {
-    template <class Owned> void operator()(Owned* owned) const {
-        if constexpr (kHasLoneRules)
-            delete owned;
-    }
-};
-template <class Owned> using LonePointer = std::unique_ptr<Owned, DeleteLone>;
-
 /// What a thread keeps from tile to tile.
 struct Scratch {
     /// `rule`, `lone`: null, or what one of them is to be.
-    Scratch(int side, size_t objects, size_t parts, std::unique_ptr<RuleTile> of_rule, LonePointer<LoneRule> of_lone)
+    Scratch(int side, size_t objects, size_t parts, std::unique_ptr<RuleTile> of_rule,
+            std::unique_ptr<LoneRule> of_lone)
         : surface(side), tile(side), rule(std::move(of_rule)), lone(std::move(of_lone)), object_voxels(objects, 0),
           shell_of_open(objects, 0), inside_of_open(objects, 0), overlaps_itself(parts, 0), positive(objects, 0),
           negative(objects, 0) {
         fill.use_rule(rule.get(), lone.get());
-        if (kHasLoneRules && lone && lone->asks_for_volumes())
-            sheets.reset(new ColumnSheets);
+        if (lone && lone->asks_for_volumes())
+            sheets = std::make_unique<ColumnSheets>();
     }
     TileSurface surface;
     TileVoxels tile;
     std::unique_ptr<RuleTile> rule; // these two are null where all parts have `touch`, or else one of them
-    LonePointer<LoneRule> lone;
-    LonePointer<ColumnSheets> sheets; // where that one asks for volumes
+    std::unique_ptr<LoneRule> lone;
+    std::unique_ptr<ColumnSheets> sheets; // where that one asks for volumes
     SolidFill fill;
     TileSorter sorter;
     std::vector<Vertex> vertices;
@@ -96,7 +88,7 @@ public:
         const int tile_x = int(index) % bins_.tiles_per_side, tile_y = int(index) / bins_.tiles_per_side;
         for_each_part(index, s, [](uint32_t) {});
         Stopwatch lap;
-        if (kHasLoneRules && s.lone)
+        if (s.lone)
             s.object_voxels[0] += take_lone(index, s, out);
         if (!s.tile.empty())
             s.sorter.sort(s.tile, slot, tile_x, tile_y, out);
@@ -156,7 +148,7 @@ private:
                                                                         : 0;
             if (s.rule)
                 s.rule->begin(part, parts_[part].object, parts_[part].rule, listed);
-            if (kHasLoneRules && s.lone)
+            if (s.lone)
                 s.lone->clear(tile_x, tile_y, listed);
             if (parts_[part].kind == PartKind::mesh) {
                 add_mesh(part, triangles, window, s);
@@ -190,9 +182,9 @@ private:
         std::optional<CappedSurface> own;
         const CappedSurface* capped = capped_of(index, *vertices, own);
         s.seconds.holes += lap();
-        // Sheets take a surface whose triangles meet along all their edges.
-        const bool has_sheets =
-            kHasLoneRules && analysis.closed && analysis.orientation == nullptr && capped == nullptr;
+        // Sheets take a surface whose triangles meet along all their edges. Vectors alone find them (not on the page).
+        const bool has_sheets = engine_.cover_by_vectors != nullptr && analysis.closed &&
+                                analysis.orientation == nullptr && capped == nullptr;
         ColumnSheets* sheets = has_sheets ? s.sheets.get() : nullptr;
         s.fill.use_sheets(sheets);
         if (sheets != nullptr)
@@ -236,8 +228,7 @@ private:
     template <bool Cross>
     void cover(const PartView& part, const MeshAnalysis& analysis, const CappedSurface* capped,
                const std::vector<Vertex>& vertices, std::span<const BinnedTriangle> triangles, const Window& window,
-               bool has_rule, ColumnSheets* of_columns, TileSurface& surface) const {
-        ColumnSheets* const sheets = kHasLoneRules ? of_columns : nullptr;
+               bool has_rule, ColumnSheets* sheets, TileSurface& surface) const {
         const MeshView& mesh = *part.mesh;
         surface.set_material(part.material);
         const Orientation* orientation = analysis.orientation.get();
@@ -277,7 +268,7 @@ private:
                 } else {
                     const bool by_volume = part.rule == Rule::half && !has_caps;
                     const bool crosses = counts && !has_caps;
-                    const bool has_sheets = kHasLoneRules && sheets != nullptr && counts;
+                    const bool has_sheets = sheets != nullptr && counts;
                     if (by_vectors && !is_upright(a, b, c))
                         wanted = {crosses, true, !by_volume || has_sheets};
                     else if (crosses || !by_volume)
@@ -307,7 +298,7 @@ private:
             }
         };
         for_each_triangle(mesh, capped, vertices, triangles, window, add, add_cap);
-        if (!kHasLoneRules || sheets == nullptr)
+        if (sheets == nullptr)
             return;
         engine_.find_needed(*sheets, window.top);
         for_each_triangle(

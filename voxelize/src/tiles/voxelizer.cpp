@@ -156,8 +156,7 @@ struct BlockVoxelizer::State {
                     side, objects, parts.size(),
                     has_rule && (volumes || !is_lone()) ? std::make_unique<RuleTile>(side, objects > 1, has_materials)
                                                         : nullptr,
-                    LonePointer<LoneRule>(kHasLoneRules && !volumes && is_lone() ? new LoneRule(parts[0].rule, thin)
-                                                                                 : nullptr));
+                    !volumes && is_lone() ? std::make_unique<LoneRule>(parts[0].rule, thin) : nullptr);
             if (volumes)
                 worker.find_volumes(tiles[job], *scratch[size_t(thread)], found[job]);
             else
@@ -201,8 +200,7 @@ struct BlockVoxelizer::State {
 
     /// Whether a rule is for a single part of one material.
     bool is_lone() const {
-        return kHasLoneRules && has_rule && !has_materials && parts.size() == 1 && objects == 1 &&
-               parts[0].kind == PartKind::mesh;
+        return has_rule && !has_materials && parts.size() == 1 && objects == 1 && parts[0].kind == PartKind::mesh;
     }
 
     /// The voxels of a block by the rule.
