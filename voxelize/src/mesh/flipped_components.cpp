@@ -6,6 +6,8 @@
 #include "triangle_bvh.h"
 
 #include <bit>
+#include <cmath>
+#include <optional>
 #include <unordered_set>
 
 namespace voxrt::voxelize {
@@ -14,6 +16,7 @@ namespace {
 constexpr uint32_t kNoComponent = 0xFFFF'FFFF, kNoVertex = 0xFFFF'FFFF;
 constexpr size_t kFewComponents = 512; // up to so many are compared pair by pair
 constexpr double kCracks = 1e-5;       // the share of openings in the area of a surface that rounding leaves open
+constexpr int kNear = 2;               // lattice units, more than rounding moves the middle of a triangle
 constexpr size_t kBatch = 16;          // triangles per query
 
 /// Seen from above, on which side of uv q lies. A q on the line is moved by an infinitesimal along x, then y
@@ -42,6 +45,28 @@ bool is_on(const Vertex& a, const Vertex& b, const Vertex& c, const Vertex& q) {
         };
         const int u = side(a, b), v = side(b, c), w = side(c, a);
         if (!((u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0)))
+            return false;
+    }
+    return true;
+}
+
+/// Whether q is at most kNear from triangle abc.
+bool is_near(const Vertex& a, const Vertex& b, const Vertex& c, const Vertex& q) {
+    using Arrow = std::array<double, 3>;
+    const auto arrow = [](const Vertex& u, const Vertex& v) {
+        return Arrow{double(v.x) - u.x, double(v.y) - u.y, double(v.z) - u.z};
+    };
+    const auto cross = [](const Arrow& u, const Arrow& v) {
+        return Arrow{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+    };
+    const auto dot = [](const Arrow& u, const Arrow& v) { return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]; };
+    const Arrow normal = cross(arrow(a, b), arrow(a, c));
+    const double room = kNear * std::sqrt(dot(normal, normal));
+    if (std::abs(dot(normal, arrow(a, q))) > room)
+        return false;
+    for (const auto& [u, v] : {std::pair{&a, &b}, {&b, &c}, {&c, &a}}) {
+        const Arrow edge = arrow(*u, *v);
+        if (dot(normal, cross(edge, arrow(*u, q))) < -room * std::sqrt(dot(edge, edge)))
             return false;
     }
     return true;
@@ -273,6 +298,12 @@ private:
                 return true;
         return false;
     }
+    Vertex middle_of(const Corners& c) const {
+        const auto middle = [&](int32_t Vertex::* axis) {
+            return int32_t((int64_t(vertices_[c[0]].*axis) + vertices_[c[1]].*axis + vertices_[c[2]].*axis) / 3);
+        };
+        return {middle(&Vertex::x), middle(&Vertex::y), middle(&Vertex::z)};
+    }
     TriangleBox box_of(uint32_t t) const {
         TriangleBox box;
         for (const uint32_t v : corners(t))
@@ -308,10 +339,9 @@ private:
         }
     }
 
-    /// The winding numbers of larger components at a vertex, by the triangles above it. Of those that it touches the
-    /// winding number is not known.
-    std::vector<Enclosing> winding_at(uint32_t own, uint32_t vertex, const TriangleBvh& bvh) const {
-        const Vertex& q = vertices_[vertex];
+    /// The winding numbers of larger components at a place, by the triangles above it. Of those that it touches the
+    /// winding number is not known. `room`: 0 for a vertex, kNear for the middle of a triangle, which is rounded.
+    std::vector<Enclosing> winding_at(uint32_t own, const Vertex& q, int room, const TriangleBvh& bvh) const {
         std::vector<Enclosing> found;
         auto at = [&](uint32_t component) -> Enclosing& {
             for (Enclosing& enclosing : found)
@@ -319,7 +349,7 @@ private:
                     return enclosing;
             return found.emplace_back(Enclosing{component, 0, false});
         };
-        const TriangleBox above{{q.x, q.y, q.z}, {q.x, q.y, INT32_MAX}};
+        const TriangleBox above{{q.x - room, q.y - room, q.z - room}, {q.x + room, q.y + room, INT32_MAX}};
         bvh.find(above, [&](uint32_t t) {
             const uint32_t component = component_of_[t];
             if (component == kNoComponent || rank_[component] >= rank_[own])
@@ -327,6 +357,10 @@ private:
             const Corners corner = corners(t);
             const Vertex &a = vertices_[corner[0]], &b = vertices_[corner[1]], &c = vertices_[corner[2]];
             const int height = sign_of(volume6_of(a, b, c, q));
+            if (room > 0 && is_near(a, b, c, q)) {
+                at(component).touched = true;
+                return;
+            }
             if (height == 0) {
                 if (std::min({a.z, b.z, c.z}) <= q.z && is_on(a, b, c, q))
                     at(component).touched = true;
@@ -343,11 +377,17 @@ private:
     std::vector<Enclosing> find_enclosing(uint32_t own, const TriangleBvh& bvh) const {
         const Component& component = components_[own];
         std::vector<Enclosing> enclosing;
+        const auto is_clear = [&] {
+            return std::none_of(enclosing.begin(), enclosing.end(), [](const Enclosing& one) { return one.touched; });
+        };
         for (const uint32_t vertex : component.vertices) {
-            enclosing = winding_at(own, vertex, bvh);
-            if (std::none_of(enclosing.begin(), enclosing.end(), [](const Enclosing& one) { return one.touched; }))
+            enclosing = winding_at(own, vertices_[vertex], 0, bvh);
+            if (is_clear())
                 break;
         }
+        // All corners of a cavity may lie on other surface, where parts share edges.
+        for (size_t i = 0; i < component.triangles.size() && !is_clear(); ++i)
+            enclosing = winding_at(own, middle_of(corners(component.triangles[i])), kNear, bvh);
         std::erase_if(enclosing, [](const Enclosing& one) { return one.touched; });
         // A component whose surface is not near a triangle encloses all of it or none of it.
         std::vector<uint32_t> near;
@@ -373,7 +413,8 @@ private:
                         std::vector<Enclosing>& enclosing) const {
         std::array<std::vector<Enclosing>, 3> at;
         for (size_t i = 0; i < 3; ++i)
-            at[i] = winding_at(own, c[i], bvh);
+            at[i] = winding_at(own, vertices_[c[i]], 0, bvh);
+        std::optional<std::vector<Enclosing>> at_middle;
         std::erase_if(enclosing, [&](const Enclosing& one) {
             size_t touched = 0;
             for (const std::vector<Enclosing>& here : at) {
@@ -384,7 +425,14 @@ private:
                     return true;
                 touched += other->touched;
             }
-            return touched == 3; // what lies on the surface around it is no wall of a cavity
+            if (touched < 3)
+                return false;
+            // What lies on the surface around it is no wall of a cavity.
+            if (!at_middle)
+                at_middle = winding_at(own, middle_of(c), kNear, bvh);
+            return std::none_of(at_middle->begin(), at_middle->end(), [&](const Enclosing& found) {
+                return found.component == one.component && !found.touched && found.winding == one.winding;
+            });
         });
         TriangleBox box;
         for (const uint32_t v : c)
