@@ -5,6 +5,8 @@ of all boxes: a voxel has to be solid where it meets a box that is smaller by so
 does not meet one that is larger by as much.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from oracles.voxels import dense
@@ -81,10 +83,7 @@ def meets(boxes, matrix, grid, margin):
     return found
 
 
-@pytest.mark.parametrize("how", ["parts", "sides", "faces"])
-@pytest.mark.parametrize("crossing", [False, True])
-@pytest.mark.parametrize("seed", range(16))
-def test_rotated_boxes_are_their_union(seed, crossing, how):
+def assert_union(seed, crossing, how, shift=0.0):
     rng = np.random.default_rng([seed, crossing])
     side, cuts = rng.choice([4, 8, 16]), rng.choice([0, 0.2])
     boxes, matrix = placed(rng, side, crossing), rotation(rng)
@@ -94,9 +93,23 @@ def test_rotated_boxes_are_their_union(seed, crossing, how):
     triangles = np.concatenate(
         [turned(own, sides, rng, how) + start for (_, own, sides), start in zip(parts, starts, strict=True)]
     )
-    positions = positions.astype(np.float32)
+    positions = (positions + shift).astype(np.float32)
     low, high = positions.min(0).astype(float), positions.max(0).astype(float)
     grid = Grid(DEPTH, tuple(low), (high - low).max() / SIDE)
+    margin = 0.002 + 3 * np.spacing(np.abs(positions).max()) / grid.voxel_size
     solid = dense(voxelize(voxrt.mesh_scene(positions, triangles), grid).voxels) != 0
-    assert not (meets(boxes, matrix, grid, -0.002) & ~solid).any()
-    assert not (solid & ~meets(boxes, matrix, grid, 0.002)).any()
+    assert not (meets(boxes, matrix, replace(grid, origin=tuple(low - shift)), -margin) & ~solid).any()
+    assert not (solid & ~meets(boxes, matrix, replace(grid, origin=tuple(low - shift)), margin)).any()
+
+
+@pytest.mark.parametrize("how", ["parts", "sides", "faces"])
+@pytest.mark.parametrize("crossing", [False, True])
+@pytest.mark.parametrize("seed", range(16))
+def test_rotated_boxes_are_their_union(seed, crossing, how):
+    assert_union(seed, crossing, how)
+
+
+@pytest.mark.parametrize("crossing", [False, True])
+@pytest.mark.parametrize("seed", range(16))
+def test_so_they_are_far_from_the_origin_where_float32_is_coarser(seed, crossing):
+    assert_union(seed, crossing, "sides", shift=3000.0)

@@ -8,9 +8,8 @@
 namespace voxrt::voxelize {
 namespace {
 
-constexpr double kRounding = 2;                     // units of the lattice
-constexpr double kExactly = 0.01;                   // likewise: rounding in here alone
-constexpr double kRoundingOfFile = 1.0 / (1 << 23); // of the size of the mesh, where a file has float32
+constexpr double kRounding = 2;   // units of the lattice
+constexpr double kExactly = 0.01; // likewise: rounding in here alone
 
 constexpr size_t kMostFaces = 64; // at an edge
 
@@ -148,7 +147,7 @@ Balance balance_of(const MeshEdges& edges) {
 
 } // namespace
 
-std::vector<EdgeCut> find_cuts(const MeshEdges& edges, const std::vector<Vertex>& vertices) {
+std::vector<EdgeCut> find_cuts(const MeshEdges& edges, const std::vector<Vertex>& vertices, double rounding) {
     std::vector<bool> is_end(vertices.size(), false), is_used(vertices.size(), false);
     TriangleBox whole;
     edges.each([&](uint32_t low, std::span<const EdgeUse> uses) {
@@ -162,7 +161,7 @@ std::vector<EdgeCut> find_cuts(const MeshEdges& edges, const std::vector<Vertex>
     double size = 0;
     for (int i = 0; i < 3; ++i)
         size = std::max(size, double(whole.high[i]) - whole.low[i]);
-    const double room = kRounding + size * kRoundingOfFile;
+    const double room = kRounding + size * rounding;
     VerticesOnEdges ends(vertices, is_end, room);
     std::vector<EdgeCut> cuts;
     edges.each([&](uint32_t low, std::span<const EdgeUse> uses) {
@@ -191,7 +190,8 @@ std::vector<EdgeCut> find_cuts(const MeshEdges& edges, const std::vector<Vertex>
     };
     std::vector<EdgeCut> near = cut_all(room);
     const Balance of_near = balance_of(MeshEdges(edges, near));
-    if (of_near.is_balanced)
+    // What closes with others' ends on its edges is closed, though some faces are turned.
+    if (of_near.is_balanced || of_near.odd == 0)
         return near;
     std::vector<EdgeCut> exact = cut_all(kExactly);
     if (balance_of(MeshEdges(edges, exact)).is_balanced)

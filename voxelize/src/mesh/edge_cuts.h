@@ -13,7 +13,8 @@
 
 namespace voxrt::voxelize {
 
-/// The edges to be cut, in the order of `edges`. `vertices`: in a lattice.
-std::vector<EdgeCut> find_cuts(const MeshEdges& edges, const std::vector<Vertex>& vertices);
+/// The edges to be cut, in the order of `edges`. `vertices`: in a lattice. `rounding`: how far a vertex may lie from
+/// the edge that it was meant to be on, as a part of the size of the mesh.
+std::vector<EdgeCut> find_cuts(const MeshEdges& edges, const std::vector<Vertex>& vertices, double rounding);
 
 } // namespace voxrt::voxelize

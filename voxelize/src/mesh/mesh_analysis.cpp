@@ -5,6 +5,8 @@
 #include "../work/interrupt.h"
 #include "edge_cuts.h"
 
+#include <array>
+#include <cmath>
 #include <functional>
 #include <optional>
 
@@ -87,6 +89,30 @@ bool closes(const MeshEdges& edges, const Orientation& orientation) {
     return closed;
 }
 
+/// How far rounding of the file may move a vertex away from an edge, as a part of the size of the mesh. Far from the
+/// origin, coordinates in float32 are coarser.
+double rounding_of(const MeshView& mesh) {
+    constexpr double kFloat = 1.0 / (1 << 23);
+    std::array<double, 3> low, high;
+    low.fill(INFINITY);
+    high.fill(-INFINITY);
+    bool is_float = true;
+    for (const int32_t v : mesh.triangles)
+        for (size_t axis = 0; axis < 3; ++axis) {
+            const double at = mesh.positions[3 * size_t(v) + axis];
+            low[axis] = std::min(low[axis], at);
+            high[axis] = std::max(high[axis], at);
+            is_float = is_float && double(float(at)) == at;
+        }
+    double size = 0, farthest = 0;
+    for (size_t axis = 0; axis < 3; ++axis) {
+        size = std::max(size, high[axis] - low[axis]);
+        farthest = std::max({farthest, -low[axis], high[axis]});
+    }
+    // Both the vertex and the ends of the edge were rounded.
+    return kFloat * (is_float && size > 0 ? std::max(1.0, 2 * farthest / size) : 1.0);
+}
+
 /// `keys`: of the vertices; equal ones are welded. `box`: the volume of their box. `vertices`: in a lattice. `points`
 /// gives them to measure.
 Enclosed find_enclosed(const MeshView& mesh, const TriangleSums& sums, double box, const std::vector<uint64_t>& keys,
@@ -98,7 +124,7 @@ Enclosed find_enclosed(const MeshView& mesh, const TriangleSums& sums, double bo
     std::vector<EdgeCut> cuts;
     const auto orient = [&](bool flat) {
         edges.emplace(mesh, weld(keys));
-        cuts = find_cuts(*edges, vertices);
+        cuts = find_cuts(*edges, vertices, rounding_of(mesh));
         if (!cuts.empty())
             cut.emplace(*edges, cuts);
         bodies.emplace(*edges, cut ? *cut : *edges);
