@@ -5,7 +5,6 @@
 #include "../rules/thin_voxels.h"
 #include "rule_tile.h"
 
-#include <cmath>
 #include <vector>
 
 namespace voxrt::voxelize {
@@ -30,15 +29,8 @@ public:
     std::array<double, kBrickVoxels>& volumes() { return volumes_; }
 
     /// Fills those of some voxels whose volumes are a half or more.
-    void fill_halves(int column, int k, const Slices& voxels, const Slices& touched, Slices& filled) {
-        Slices near{};
-        for (int z = 0; z < kBrickSide; ++z)
-            for (uint64_t left = voxels[z] & ~filled[z]; left != 0; left &= left - 1) {
-                const int bit = std::countr_zero(left);
-                const double over = volumes_[size_t(z * 64 + bit)] - 0.5;
-                filled[z] |= uint64_t{over >= error_} << bit;
-                near[z] |= uint64_t{std::abs(over) < error_} << bit;
-            }
+    void decide_halves(int column, int k, const Slices& voxels, const Slices& touched, Slices& filled) {
+        const Slices near = fill_halves(volumes_, voxels, error_, filled);
         if (is_empty(near))
             return;
         doubts_.push_back({bricks_.size(), column, k, near});

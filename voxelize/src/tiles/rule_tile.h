@@ -34,6 +34,20 @@ struct HalfDoubt {
     Slices voxels;
 };
 
+/// Fills those of some voxels of a brick whose volumes are above a half. Returns those nearer to it than `error`.
+inline Slices fill_halves(const std::array<double, kBrickVoxels>& volumes, const Slices& voxels, double error,
+                          Slices& filled) {
+    Slices near{};
+    for (int z = 0; z < kBrickSide; ++z)
+        for (uint64_t left = voxels[z] & ~filled[z]; left != 0; left &= left - 1) {
+            const int bit = std::countr_zero(left);
+            const double over = volumes[size_t(z * 64 + bit)] - 0.5;
+            filled[z] |= uint64_t{over >= error} << bit;
+            near[z] |= uint64_t{std::abs(over) < error} << bit;
+        }
+    return near;
+}
+
 class RuleTile {
 public:
     /// For tiles of a grid of `side` voxels. `has_owners`: whether it is noted which object has which surface.
@@ -182,17 +196,7 @@ private:
         }
 
         /// Fills the voxels whose sums are above a half. Returns those nearer to it than `error`.
-        Slices add_halves(Slices& filled, double error) const {
-            Slices doubtful{};
-            for (int z = 0; z < kBrickSide; ++z)
-                for (uint64_t left = summed_[z] & ~filled[z]; left != 0; left &= left - 1) {
-                    const int bit = std::countr_zero(left);
-                    const double over = values_[size_t(z * 64 + bit)] - 0.5;
-                    filled[z] |= uint64_t{over >= error} << bit;
-                    doubtful[z] |= uint64_t{std::abs(over) < error} << bit;
-                }
-            return doubtful;
-        }
+        Slices add_halves(Slices& filled, double error) const { return fill_halves(values_, summed_, error, filled); }
 
     private:
         Slices summed_;

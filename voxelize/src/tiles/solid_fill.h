@@ -355,7 +355,7 @@ private:
             filled[z] = (hidden[z] | held[z] | ((within[z] | on[z]) & ~voxels[z])) & touched[z];
         }
         if (!is_empty(voxels))
-            lone_->fill_halves(column, k, voxels, touched, filled);
+            lone_->decide_halves(column, k, voxels, touched, filled);
         lone_->add(column, k, touched, filled);
         return filled;
     }
