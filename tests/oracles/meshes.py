@@ -81,3 +81,24 @@ def scene_of(*items):
 
 def one_object(mesh, **how):
     return scene_of(SceneObject("o", mesh, **how))
+
+
+def cut_box(low, high, rng, cuts):
+    """Return positions, triangles and the side of each triangle of a box; each side is cut at planes of its own.
+
+    `cuts`: the share of the planes at which it is.
+    """
+    corners = np.array([[(low, high)[i >> 2][0], (low, high)[i >> 1 & 1][1], (low, high)[i & 1][2]] for i in range(8)])
+    positions, triangles, sides = [], [], []
+    for side, quad in enumerate(([0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3])):
+        a, b, _, d = (corners[vertex].astype(float) for vertex in quad)
+        lengths = [int(np.abs(end - a).sum()) for end in (b, d)]
+        u, v = ([0, *(i / n for i in range(1, n) if rng.random() < cuts), 1] for n in lengths)
+        for i, j in np.ndindex(len(u) - 1, len(v) - 1):
+            start = len(positions)
+            ends = ((u[i], v[j]), (u[i + 1], v[j]), (u[i + 1], v[j + 1]), (u[i], v[j + 1]))
+            positions += [a + s * (b - a) + t * (d - a) for s, t in ends]
+            pair = [[0, 1, 2], [0, 2, 3]] if rng.random() < 0.5 else [[0, 1, 3], [1, 2, 3]]
+            triangles += [[start + corner for corner in triangle] for triangle in pair]
+            sides += [side, side]
+    return np.array(positions), np.array(triangles), np.array(sides)

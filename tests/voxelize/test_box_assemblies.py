@@ -6,34 +6,16 @@ says which faces are a box: they are one mesh, with shared vertices or without.
 
 import numpy as np
 import pytest
+from oracles.meshes import cut_box
 from oracles.voxels import dense
 
 import voxrt
 from voxrt.voxelize import Grid, voxelize
 
-QUADS = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
-
 
 def welded(positions, triangles):
     places, number = np.unique(positions, axis=0, return_inverse=True)
     return places, number.reshape(-1)[triangles]
-
-
-def box(low, high, rng, cuts):
-    """A box, each face for itself cut at some lattice planes and into triangles."""
-    corners = np.array([[(low, high)[i >> 2][0], (low, high)[i >> 1 & 1][1], (low, high)[i & 1][2]] for i in range(8)])
-    positions, triangles = [], []
-    for quad in QUADS:
-        a, b, _, d = (corners[vertex].astype(float) for vertex in np.roll(quad, rng.integers(4)))
-        sides = [int(np.abs(end - a).sum()) for end in (b, d)]
-        u, v = ([0, *(i / n for i in range(1, n) if rng.random() < cuts), 1] for n in sides)
-        for i, j in np.ndindex(len(u) - 1, len(v) - 1):
-            start = len(positions)
-            ends = ((u[i], v[j]), (u[i + 1], v[j]), (u[i + 1], v[j + 1]), (u[i], v[j + 1]))
-            positions += [a + s * (b - a) + t * (d - a) for s, t in ends]
-            pair = [[0, 1, 2], [0, 2, 3]] if rng.random() < 0.5 else [[0, 1, 3], [1, 2, 3]]
-            triangles += [[start + corner for corner in triangle] for triangle in pair]
-    return welded(np.array(positions), np.array(triangles))
 
 
 def touches(taken, low, high):
@@ -58,7 +40,7 @@ def assembly(rng, side):
         place = tuple(slice(*ends) for ends in zip(low, high, strict=True))
         if len(parts) < count and not taken[place].any() and (not parts or touches(taken, low, high)):
             taken[place] = True
-            positions, triangles = box(low, high, rng, cuts)
+            positions, triangles = welded(*cut_box(low, high, rng, cuts)[:2])
             parts.append((positions, triangles[:, ::-1] if rng.random() < 0.4 else triangles))
     return parts, taken
 

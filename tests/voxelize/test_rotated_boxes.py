@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from oracles.meshes import cut_box
 from oracles.voxels import dense
 
 import voxrt
@@ -16,30 +17,11 @@ from voxrt.voxelize import Grid, voxelize
 
 DEPTH = 5
 SIDE = 2**DEPTH
-QUADS = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
 
 
 def rotation(rng):
     matrix, _ = np.linalg.qr(rng.normal(size=(3, 3)))
     return matrix * np.sign(np.linalg.det(matrix))
-
-
-def box(low, high, rng, cuts):
-    """Return corners and triangles of a box, and the number of the side of each; sides are cut each for itself."""
-    corners = np.array([[(low, high)[i >> 2][0], (low, high)[i >> 1 & 1][1], (low, high)[i & 1][2]] for i in range(8)])
-    positions, triangles, sides = [], [], []
-    for number, quad in enumerate(QUADS):
-        a, b, _, d = (corners[vertex].astype(float) for vertex in quad)
-        lengths = [int(np.abs(end - a).sum()) for end in (b, d)]
-        u, v = ([0, *(i / n for i in range(1, n) if rng.random() < cuts), 1] for n in lengths)
-        for i, j in np.ndindex(len(u) - 1, len(v) - 1):
-            start = len(positions)
-            ends = ((u[i], v[j]), (u[i + 1], v[j]), (u[i + 1], v[j + 1]), (u[i], v[j + 1]))
-            positions += [a + s * (b - a) + t * (d - a) for s, t in ends]
-            pair = [[0, 1, 2], [0, 2, 3]] if rng.random() < 0.5 else [[0, 1, 3], [1, 2, 3]]
-            triangles += [[start + corner for corner in triangle] for triangle in pair]
-            sides += [number, number]
-    return np.array(positions), np.array(triangles), np.array(sides)
 
 
 def placed(rng, side, crossing):
@@ -87,7 +69,7 @@ def assert_union(seed, crossing, how, shift=0.0):
     rng = np.random.default_rng([seed, crossing])
     side, cuts = rng.choice([4, 8, 16]), rng.choice([0, 0.2])
     boxes, matrix = placed(rng, side, crossing), rotation(rng)
-    parts = [box(low, high, rng, cuts) for low, high in boxes]
+    parts = [cut_box(low, high, rng, cuts) for low, high in boxes]
     starts = np.cumsum([0, *(len(part[0]) for part in parts[:-1])])
     positions = np.concatenate([part[0] for part in parts]) @ matrix.T
     triangles = np.concatenate(
