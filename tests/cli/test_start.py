@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 import sys
@@ -69,3 +70,19 @@ def test_a_command_imports_what_it_uses(tmp_path, arguments, unwanted):
     )
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, check=True, capture_output=True, text=True)
     assert [line for line in done.stderr.splitlines() if "warning" not in line][-1] == ""
+
+
+@pytest.mark.parametrize(("chosen", "used"), [(None, "1"), ("3", "3")])
+def test_blas_has_one_thread_unless_the_caller_chose(tmp_path, chosen, used):
+    environment = {name: value for name, value in os.environ.items() if name != "OPENBLAS_NUM_THREADS"}
+    environment |= {"OPENBLAS_NUM_THREADS": chosen} if chosen else {}
+    code = (
+        "import os, sys\n"
+        "from voxrt.cli import main\n"
+        f"sys.argv = ['voxrt', 'build', {str(EXAMPLES / 'house.obj')!r}, '--depth', '4', '-q']\n"
+        "try:\n    main()\n"
+        "finally:\n    print(os.environ['OPENBLAS_NUM_THREADS'])"
+    )
+    command = [sys.executable, "-c", code]
+    done = subprocess.run(command, cwd=tmp_path, check=True, capture_output=True, text=True, env=environment)
+    assert done.stdout.splitlines()[-1] == used
