@@ -10,7 +10,8 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence  # noqa: TC003 - of types below
 from fractions import Fraction
 from functools import cached_property
-from itertools import pairwise, product
+from itertools import chain, pairwise, product
+from math import prod
 
 Number = int | Fraction
 Point = tuple[Number, Number, Number]
@@ -42,6 +43,11 @@ def volume6(triangles: Iterable[Triangle]) -> Number:
     return sum(dot(a, cross(b, c)) for a, b, c in triangles)
 
 
+def spans(*polygons: Sequence[Point]) -> list[tuple[Number, Number]]:
+    """Return the least and the greatest coordinate on each axis."""
+    return [(min(values), max(values)) for values in zip(*chain(*polygons), strict=True)]
+
+
 def fan(polygon: Sequence[Point]) -> list[Triangle]:
     return [(polygon[0], b, c) for b, c in pairwise(polygon[1:])]
 
@@ -53,8 +59,6 @@ def ratio(a: Number, b: Number) -> Number:
 def clip(polygon: Sequence[Point], height: Callable[[Point], Number]) -> Sequence[Point]:
     """Keep the part of a convex polygon where `height`, an affine function, is not negative."""
     heights = [height(p) for p in polygon]
-    if min(heights, default=0) >= 0:
-        return polygon
     kept: list[Point] = []
     for i, (p, h) in enumerate(zip(polygon, heights, strict=True)):
         q, k = polygon[i - 1], heights[i - 1]
@@ -111,49 +115,74 @@ def edges(triangle: Triangle) -> list[tuple[Point, Point]]:
     return [(a, b), (b, c), (c, a)]
 
 
-def is_closed(triangles: Sequence[Triangle]) -> bool:
+def is_closed(triangles: Iterable[Triangle]) -> bool:
     """Say whether each edge is walked as often one way as the other."""
     walked = Counter(edge for triangle in triangles for edge in edges(triangle))
-    if all(walked[a, b] == walked[b, a] for a, b in walked):
-        return True
-    if all((walked[a, b] + walked[b, a]) % 2 == 0 for a, b in walked):
+    surplus = [walked[a, b] - walked[b, a] for a, b in walked]
+    if any(surplus) and all(number % 2 == 0 for number in surplus):
         raise ValueError("some faces of a closed surface are turned: the checker takes consistent faces alone")
-    return False
+    return not any(surplus)
 
 
-def connected(triangles: Sequence[Triangle]) -> list[list[Triangle]]:
-    """Part triangles into pieces that share no corner."""
-    left, found = list(triangles), []
-    while left:
-        own, corners = [], set(left[0])
-        while near := [t for t in left if not corners.isdisjoint(t)]:
-            own += near
-            corners.update(p for t in near for p in t)
-            left = [t for t in left if t not in near]
-        found.append(own)
+def merged(groups: Iterable[set[Triangle]]) -> list[set[Triangle]]:
+    found: list[set[Triangle]] = []
+    for group in groups:
+        found = [f for f in found if not f & group] + [group.union(*(f for f in found if f & group))]
     return found
 
 
-def oriented(triangles: Sequence[Triangle]) -> list[list[Triangle]]:
-    """Turn closed pieces outwards; one that lies in others keeps its side of the least of them."""
-    done: list[list[Triangle]] = []
-    flips: list[bool] = []
-    for piece in sorted(connected(triangles), key=lambda piece: -abs(volume6(piece))):
-        numbers, around = 0, None
-        for index, other in enumerate(done):
-            off = {p for t in piece for p in t if not any(is_on(face, p) for face in other)}
-            if is_closed(other) and off and all(winding(other, p) for p in off):
-                numbers, around = numbers + winding(other, min(off)), index
-        flip = is_closed(piece) and (flips[around] if numbers and around is not None else volume6(piece) < 0)
-        flips.append(flip)
-        done.append([t[::-1] for t in piece] if flip else piece)  # type: ignore[misc]
-    return done
+def bodies(triangles: Iterable[Triangle]) -> list[set[Triangle]]:
+    """Set apart what closes over edges of two triangles, as long as there is such; edges connect what is left."""
+    at = defaultdict(set)
+    for triangle, edge in ((t, edge) for t in triangles for edge in edges(t)):
+        at[frozenset(edge)].add(triangle)
+    patches = merged([*({t} for t in triangles), *(own for own in at.values() if len(own) == 2)])
+    closing = [patch for patch in patches if all(len(own & patch) % 2 == 0 for own in at.values())]
+    if any(len(own) > 2 and (len(own) % 2 or not closing) for own in at.values()):
+        raise ValueError("faces that share edges close together alone: the checker does not order them")
+    rest = [t for patch in patches if patch not in closing for t in patch]
+    return closing + bodies(rest) if closing else merged(at.values())
+
+
+def cut(triangle: Triangle, others: Iterable[Triangle]) -> list[Sequence[Point]]:
+    """Cut a triangle by the planes of those that cross it, and along the edges of those upon it."""
+    parts = [triangle] if any(normal := normal_of(triangle)) else []
+    for other in others:
+        across = normal_of(other)
+        if not any(across) or any(a > d or c > b for (a, b), (c, d) in zip(spans(triangle), spans(other), strict=True)):
+            continue
+        sides = [dot(across, minus(p, other[0])) for p in triangle]
+        ends = [dot(normal, minus(p, triangle[0])) for p in other]
+        walls = [(across, other[0])] if any(sides) else [(cross(minus(b, a), across), a) for a, b in edges(other)]
+        for wall, a in walls if min(ends) <= 0 <= max(ends) else ():
+            halves = [clip(part, lambda p: s * dot(wall, minus(p, a))) for part in parts for s in (1, -1)]  # noqa: B023
+            parts = [half for half in halves if any(any(normal_of(t)) for t in fan(half))]
+    return parts
+
+
+def winding_about(body: Iterable[Triangle], closed: Sequence[Triangle]) -> int:
+    """Count how often a closed surface winds about a body that lies in it; 0 where the body passes or lies upon it."""
+    if any(a < c or b > d for (a, b), (c, d) in zip(spans(*body), spans(*closed), strict=True)):
+        return 0
+    middles = [tuple(Fraction(sum(v), len(p)) for v in zip(*p, strict=True)) for t in body for p in cut(t, closed)]
+    numbers = {0 if any(is_on(t, p) for t in closed) else winding(closed, p) for p in middles}
+    return max(numbers) if len(numbers) == 1 else 0
+
+
+def oriented(triangles: Iterable[Triangle]) -> list[list[Triangle]]:
+    """Turn closed bodies outwards; one that lies in others keeps its side of that with the smallest box."""
+    done: list[tuple[bool, list[Triangle]]] = []
+    for body in sorted(bodies(triangles), key=lambda b: (-prod(v - u for u, v in spans(*b)), -abs(volume6(b)))):
+        numbers = [winding_about(body, other) if is_closed(body) and is_closed(other) else 0 for _, other in done]
+        around = [turned for (turned, _), number in zip(done, numbers, strict=True) if number]
+        turned = is_closed(body) and (around[-1] if sum(numbers) else volume6(body) < 0)
+        done.append((turned, [t[::-1] if turned else t for t in body]))  # type: ignore[misc]
+    return [body for _, body in done]
 
 
 def meets_interior(voxel: Voxel, piece: Sequence[Point]) -> bool:
     """Say whether a part of a surface in a closed voxel lies in none of the voxel's sides."""
-    ends = ((min(p[i] for p in piece), max(p[i] for p in piece), voxel[i] * UNIT) for i in range(3))
-    return all(low < side + UNIT and high > side for low, high, side in ends)
+    return all(low < (v + 1) * UNIT and high > v * UNIT for (low, high), v in zip(spans(piece), voxel, strict=True))
 
 
 class Mesh:
@@ -171,17 +200,13 @@ class Mesh:
     def _met(self) -> tuple[set[Voxel], set[Voxel], set[Voxel]]:
         """Return voxels that the surface meets: in their interior; at all; and those behind faces between voxels."""
         interior, contact, behind = set(), set(), set()
-        between_voxels = range(0, self.side * UNIT + 1, UNIT)
         for triangle in self.triangles:
             for voxel, piece in pieces(triangle, self.side):
                 contact.add(voxel)
                 interior |= {voxel} if meets_interior(voxel, piece) else set()
-            normal = normal_of(triangle)
-            for axis in range(3):
-                plane = triangle[0][axis]
-                if normal[axis] and plane in between_voxels and all(p[axis] == plane for p in triangle):
-                    layer = min(max(plane // UNIT - (normal[axis] > 0), 0), self.side - 1)
-                    inner = layer * UNIT + UNIT // 2
+            for axis, ((plane, top), facing) in enumerate(zip(spans(triangle), normal_of(triangle), strict=True)):
+                if plane == top and plane in range(0, self.side * UNIT + 1, UNIT) and facing:
+                    inner = UNIT // 2 + UNIT * min(max(plane // UNIT - (facing > 0), 0), self.side - 1)
                     flat = [tuple(inner if i == axis else v for i, v in enumerate(p)) for p in triangle]
                     behind |= {v for v, piece in pieces(flat, self.side) if meets_interior(v, piece)}
         return interior, contact, behind
@@ -190,8 +215,7 @@ class Mesh:
     def _columns(self) -> dict[tuple[int, int], list[Triangle]]:
         at = defaultdict(list)
         for triangle in (t for t in self.closing if any(normal_of(t))):
-            ends = ((min(p[i] for p in triangle), max(p[i] for p in triangle)) for i in (0, 1))
-            for column in product(*(range(low // UNIT, high // UNIT + 1) for low, high in ends)):
+            for column in product(*(range(low // UNIT, high // UNIT + 1) for low, high in spans(triangle)[:2])):
                 at[column].append(triangle)
         return at
 
@@ -202,10 +226,8 @@ class Mesh:
             points = ((x * UNIT + 1 + 577 * k % (UNIT - 1), y * UNIT + 1 + 1409 * k % (UNIT - 1), 0) for k in TRIES)
             lines = (crossings(self._columns.get((x, y), ()), point, (0, 0, 1)) for point in points)
             line = next(line for line in lines if line is not None)
-            for z in range(self.side if line else 0):
-                middle = z * UNIT + UNIT // 2
-                if sum(sign for t, sign in line if t > middle) and (x, y, z) not in self._met[0]:
-                    found.add((x, y, z))
+            inside = (z for z in range(self.side) if sum(sign for t, sign in line if t > z * UNIT + UNIT // 2))
+            found |= {(x, y, z) for z in inside} - self._met[0]
         return found
 
     def touch(self) -> set[Voxel]:
@@ -221,13 +243,11 @@ class Mesh:
         found = set()
         for triangle in self.triangles:
             facing = [abs(v) for v in normal_of(triangle)]
-            alike = [axis for axis in range(3) if facing[axis] == max(facing)]
-            axes = {0, 1, 2} - set(alike if across and len(alike) == 1 else ())
+            axes = [i for i in range(3) if not across or facing[i] < max(facing) or facing.count(max(facing)) > 1]
             for voxel, piece in pieces(triangle, self.side):
                 part = piece if meets_interior(voxel, piece) or not across else ()
-                for axis in axes if part else ():
-                    low, high = (voxel[axis] + margin) * UNIT, (voxel[axis] + 1 - margin) * UNIT
-                    part = between(part, axis, low, high)
+                for axis in axes:
+                    part = between(part, axis, (voxel[axis] + margin) * UNIT, (voxel[axis] + 1 - margin) * UNIT)
                 found |= {voxel} if part else set()
         return found
 
@@ -237,8 +257,7 @@ class Mesh:
         for voxel in self._met[0]:
             middle = tuple(v * UNIT + UNIT // 2 for v in voxel)
             near = self._columns.get(voxel[:2], [])  # a steep line stays in the column
-            on = any(is_on(t, middle) for t in near + self.sheets)
-            if contact if on else winding(near, middle):
+            if contact if any(is_on(t, middle) for t in near + self.sheets) else winding(near, middle):
                 found.add(voxel)
         return found
 
@@ -248,7 +267,7 @@ class Mesh:
             raise ValueError("a part of the mesh lies outside of the grid")
         volumes: dict[Voxel, Fraction] = defaultdict(Fraction)
         for triangle in self.closing:
-            for part in self._parts(triangle) if normal_of(triangle)[2] else ():
+            for part in cut(triangle, self.closing) if normal_of(triangle)[2] else ():
                 above, below = self._beside(triangle, part)
                 weight = below - above if windings else bool(below) - bool(above)
                 for (x, y, z), piece in pieces(part, self.side) if weight else ():
@@ -256,32 +275,13 @@ class Mesh:
                         continue  # the voxel above has this piece too
                     for t in fan(piece):
                         area = weight * Fraction(abs(normal_of(t)[2]), 2)
-                        volumes[x, y, z] += area * (Fraction(sum(p[2] for p in t), 3) - z * UNIT)
-                        for under in range(z):
-                            volumes[x, y, under] += area * UNIT
+                        for layer in range(z + 1):
+                            volumes[x, y, layer] += area * min(Fraction(sum(p[2] for p in t), 3) - layer * UNIT, UNIT)
         return {voxel: volume / UNIT**3 for voxel, volume in volumes.items() if volume}
 
     def half(self, *, windings: bool = False) -> set[Voxel]:
         """Return voxels of which at least half is inside; with `windings`, volume counts as often as it is enclosed."""
         return {voxel for voxel, part in self.fractions(windings=windings).items() if 2 * abs(part) >= 1}
-
-    def _parts(self, triangle: Triangle) -> list[Sequence[Point]]:
-        normal, parts = normal_of(triangle), [triangle]
-        low, high = ([f(p[i] for p in triangle) for i in range(3)] for f in (min, max))
-        for other in self.closing:
-            across = normal_of(other)
-            apart = (max(p[i] for p in other) < low[i] or min(p[i] for p in other) > high[i] for i in range(3))
-            if not any(across) or any(apart):
-                continue
-            sides = [dot(across, minus(p, other[0])) for p in triangle]
-            ends = [dot(normal, minus(p, triangle[0])) for p in other]
-            walls = [(across, other[0])] if min(sides) < 0 < max(sides) and min(ends) <= 0 <= max(ends) else []
-            if not any(sides) and other is not triangle:
-                walls = [(cross(minus(b, a), across), a) for a, b in edges(other)]
-            for wall, a in walls:
-                halves = [clip(part, lambda p: s * dot(wall, minus(p, a))) for part in parts for s in (1, -1)]  # noqa: B023
-                parts = [half for half in halves if any(normal_of(t)[2] for t in fan(half))]
-        return parts
 
     def _beside(self, triangle: Triangle, part: Sequence[Point]) -> tuple[int, int]:
         """Find the winding numbers above and below a part. Of triangles at one height, the first is on top."""

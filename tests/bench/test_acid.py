@@ -6,80 +6,25 @@ import sys
 from fractions import Fraction
 from pathlib import Path
 
-import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from oracles.voxels import dense
-
-from voxrt.voxelize import EMPTY, Grid, Material, Mesh, Scene, SceneObject, voxelize
 
 BENCH = Path(__file__).resolve().parents[2] / "bench"
 sys.path.append(str(BENCH))
 
 from acid import checker  # noqa: E402 - found there
 from acid.cases import CASES  # noqa: E402
-from acid.shapes import ball, box, cube, rotation, star, turned  # noqa: E402
+from acid.comparison import OCTAHEDRON, TETRAHEDRON, expected, solids, voxels_of  # noqa: E402
+from acid.shapes import ball, box, cube, faces_of, rotation, slab_with_notch, star, turned  # noqa: E402
 
 UNIT = checker.UNIT
-
-
-def voxels_of(triangles, depth, origin=(0, 0, 0), rule="touch"):
-    points = np.array(triangles, float).reshape(-1, 3) / UNIT + np.array(origin, float)
-    corners = np.arange(len(points), dtype=np.int32).reshape(-1, 3)
-    mesh = Mesh(points, corners, np.ones(len(corners), np.uint8))
-    scene = Scene("case", (SceneObject("case", mesh),), (EMPTY, Material("stone", (150, 150, 150))))
-    grid = Grid(depth, tuple(map(float, origin)), 1.0)
-    result = voxelize(scene, grid, rule=rule, thin="drop", threads=1)
-    return {tuple(voxel) for voxel in np.argwhere(dense(result.voxels)).tolist()}
-
-
-def expected(triangles, depth):
-    """By rule, the voxels of solids; only by touch, those of sheets."""
-    mesh = checker.Mesh(triangles, 2**depth)
-    pieces = checker.oriented(triangles)
-    enclosing = all(checker.is_closed(piece) and checker.volume6(piece) for piece in pieces)
-    inside = all(0 <= v <= mesh.side * UNIT for t in triangles for p in t for v in p)
-    found = {"touch": mesh.touch()} | ({"centre": mesh.centre(contact=True)} if enclosing else {})
-    return found | ({"half": mesh.half(windings=True)} if enclosing and inside else {})
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_voxrt_is_right_on_every_case(case):
     for rule, voxels in expected(case.surface, case.depth).items():
         assert voxels_of(case.triangles, case.depth, case.origin, rule) == voxels, rule
-
-
-def coordinates(depth):
-    """Numbers of the lattice; many lie on planes between voxels, and some outside of the grid."""
-    plane = st.integers(-1, 2**depth + 1)
-    return st.one_of(plane.map(lambda v: v * UNIT), st.integers(-UNIT // 2, 2**depth * UNIT + UNIT // 2))
-
-
-SHAPES = {
-    4: [(0, 2, 1), (0, 3, 2), (0, 1, 3), (1, 2, 3)],
-    6: [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)],
-}
-
-
-BOTH = st.booleans()
-
-
-@st.composite
-def solids(draw, inside=BOTH):
-    """Up to three tetrahedra, or an octahedron that may cut itself: (triangles, depth)."""
-    depth = draw(st.integers(1, 4))
-    within = draw(inside)
-    number = coordinates(depth).map(lambda v: min(max(v, 0), 2**depth * UNIT)) if within else coordinates(depth)
-    point = st.tuples(number, number, number)
-    triangles = []
-    for count in draw(st.sampled_from([(4,), (4, 4), (4, 4, 4), (6,)])):
-        points = draw(st.lists(point, min_size=count, max_size=count, unique=True))
-        piece = [tuple(points[i] for i in face) for face in SHAPES[count]]
-        assume(checker.volume6(piece) != 0)
-        triangles += turned(piece) if draw(st.booleans()) else piece
-    assume(len({frozenset(t) for t in triangles}) == len(triangles))
-    return triangles, depth
 
 
 @settings(max_examples=40)
@@ -101,7 +46,7 @@ def test_faces_of_a_closed_piece_may_be_turned(solid, data):
 
 
 @settings(max_examples=20)
-@given(solids(st.just(True)))
+@given(solids(inside=True))
 def test_fractions_add_up_to_the_volume(solid):
     triangles, depth = solid
     assume(len(triangles) == 4)
@@ -148,7 +93,7 @@ def test_bounds_of_the_rules():
     assert walls.touch() == walls.centre(contact=True) == walls.half()
 
 
-def test_a_piece_within_another_is_a_cavity_where_it_faces_inwards():
+def test_a_body_within_another_is_a_cavity_where_it_faces_inwards():
     hollow = checker.Mesh(cube(2, 14) + turned(cube(5, 11)), 16)
     assert len(hollow.touch()) == 12**3 - 6**3
     inverted = checker.Mesh(turned(cube(2, 14)) + cube(5, 11), 16)
@@ -156,6 +101,26 @@ def test_a_piece_within_another_is_a_cavity_where_it_faces_inwards():
     assert checker.Mesh(cube(2, 14) + cube(5, 11), 16).touch() == checker.Mesh(cube(2, 14), 16).touch()
     beside = checker.Mesh(cube(1, 4) + turned(cube(9, 12)), 16)
     assert len(beside.touch()) == 2 * 3**3
+
+
+INSCRIBED = [(14, 8, 8), (2, 8, 8), (8, 2, 8), (8, 14, 8), (8, 8, 2), (8, 8, 14)]
+WEDGE = [(2, 2, 2), (2, 2, 14), (9, 5, 8), (5, 9, 8)]
+TOUCHING = {
+    "corners on sides": (cube(2, 14), faces_of(INSCRIBED, OCTAHEDRON), True),
+    "an edge on an edge": (cube(2, 14), faces_of(WEDGE, TETRAHEDRON), True),
+    "a side on a side": (cube(2, 14), box((4, 4, 8), (8, 8, 14)), False),
+    "through a side": (cube(2, 14), box((4, 4, 8), (8, 8, 15)), False),
+    "through a notch, its corners inside": (slab_with_notch(), box((3, 5, 4), (13, 11, 6)), False),
+    "beside it at an edge": (cube(2, 8), box((8, 8, 2), (14, 14, 8)), False),
+}
+
+
+@pytest.mark.parametrize(("outer", "inner", "is_cavity"), TOUCHING.values(), ids=TOUCHING)
+def test_a_cavity_touches_what_it_is_in_at_most_at_corners_and_edges(outer, inner, is_cavity):
+    both = checker.Mesh(outer + turned(inner), 16)
+    assert voxels_of(outer + turned(inner), 4) == both.touch()
+    whole, part = (sum(checker.Mesh(mesh, 16).fractions().values()) for mesh in (outer, inner))
+    assert sum(both.fractions(windings=True).values()) == (whole - part if is_cavity else whole + part)
 
 
 def test_the_checker_stands_alone():
