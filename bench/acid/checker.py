@@ -44,7 +44,6 @@ def volume6(triangles: Iterable[Triangle]) -> Number:
 
 
 def spans(*polygons: Sequence[Point]) -> list[tuple[Number, Number]]:
-    """Return the least and the greatest coordinate on each axis."""
     return [(min(values), max(values)) for values in zip(*chain(*polygons), strict=True)]
 
 
@@ -265,18 +264,19 @@ class Mesh:
         """Return which part of each voxel is inside, or with `windings` how often. The mesh must lie in the grid."""
         if any(not 0 <= v <= self.side * UNIT for t in self.closing for p in t for v in p):
             raise ValueError("a part of the mesh lies outside of the grid")
-        volumes: dict[Voxel, Fraction] = defaultdict(Fraction)
+        volumes, covered = defaultdict(Fraction), defaultdict(Fraction)
         for triangle in self.closing:
             for part in cut(triangle, self.closing) if normal_of(triangle)[2] else ():
                 above, below = self._beside(triangle, part)
                 weight = below - above if windings else bool(below) - bool(above)
                 for (x, y, z), piece in pieces(part, self.side) if weight else ():
-                    if z < self.side - 1 and min(p[2] for p in piece) == (z + 1) * UNIT:
-                        continue  # the voxel above has this piece too
-                    for t in fan(piece):
-                        area = weight * Fraction(abs(normal_of(t)[2]), 2)
-                        for layer in range(z + 1):
-                            volumes[x, y, layer] += area * min(Fraction(sum(p[2] for p in t), 3) - layer * UNIT, UNIT)
+                    if z == self.side - 1 or min(p[2] for p in piece) < (z + 1) * UNIT:  # or the voxel above has it
+                        for t in fan(piece):
+                            area = weight * Fraction(abs(normal_of(t)[2]), 2)
+                            volumes[x, y, z] += area * (Fraction(sum(p[2] for p in t), 3) - z * UNIT)
+                            covered[x, y, z] += area
+        for (x, y, z), area in covered.items():
+            volumes |= {(x, y, under): volumes[x, y, under] + area * UNIT for under in range(z)}
         return {voxel: volume / UNIT**3 for voxel, volume in volumes.items() if volume}
 
     def half(self, *, windings: bool = False) -> set[Voxel]:
