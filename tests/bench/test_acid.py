@@ -103,7 +103,7 @@ def test_a_body_within_another_is_a_cavity_where_it_faces_inwards():
     assert len(beside.touch()) == 2 * 3**3
 
 
-INSCRIBED = [(14, 8, 8), (2, 8, 8), (8, 2, 8), (8, 14, 8), (8, 8, 2), (8, 8, 14)]
+INSCRIBED = [(14, 7, 10), (2, 7, 10), (7, 2, 10), (7, 14, 10), (7, 10, 2), (7, 10, 14)]
 WEDGE = [(2, 2, 2), (2, 2, 14), (9, 5, 8), (5, 9, 8)]
 TOUCHING = {
     "corners on sides": (cube(2, 14), faces_of(INSCRIBED, OCTAHEDRON), True),
