@@ -16,6 +16,7 @@
 #include "lone_rule.h"
 #include "rule_tile.h"
 #include "tile_voxels.h"
+#include "volume_sums.h"
 
 #include <algorithm>
 #include <bit>
@@ -138,14 +139,14 @@ private:
                      : sheets_ ? columns_of(sheets_->doubtful, column)
                                : ~uint64_t{0};
         const bool has_volumes = by_volume_ != 0;
-        uint64_t summed = 0; // columns whose volume is summed in below_: the last slice had surface there
+        sums_.clear();
         while (k < object.height()) {
             const ShellBrick* brick = object.find(column, k);
             if (brick == nullptr) {
                 const int end = k > highest ? object.height() : object.next_brick(column, k, highest);
                 claim_run(tile, column, k, end, winding.inside(), interior, result);
                 result.note(winding, 0);
-                summed = 0;
+                sums_.clear();
                 k = end;
                 continue;
             }
@@ -161,17 +162,15 @@ private:
                                                         : lone_      ? &lone_->volumes()
                                                                      : &rule_->room_for_volumes(column, k);
             for (int z = 0; z < slices; ++z) {
-                // Below its surface a solid fills as many voxels as the winding number says, which has no rounding.
-                for (uint64_t begun = surface[z] & ~summed; begun != 0; begun &= begun - 1)
-                    below_[std::countr_zero(begun)] = winding.at(std::countr_zero(begun));
-                summed = surface[z];
+                sums_.begin(surface[z], winding);
                 advance(winding, crossings, index, brick->has_repeated, z);
                 within[z] = winding.inside();
                 result.note(winding, shell[z]);
-                add_volumes(object, pieces, surface[z], volumes, z);
+                if (surface[z] != 0)
+                    sums_.add(object, pieces, surface[z], *volumes, z);
             }
             if (pieces)
-                summed = carry_volumes(object, *pieces, summed, winding);
+                sums_.carry(object, *pieces, winding);
             claim_brick(tile, object, column, k, *brick, within, interior, result);
             ++k;
         }
@@ -185,35 +184,6 @@ private:
             found |= (rows[size_t(column / kTileBricks * kBrickSide + y)] >> column % kTileBricks * kBrickSide & 0xFF)
                      << kBrickSide * y;
         return found;
-    }
-
-    /// Adds to `below_` what pieces of a brick add to the brick above. Returns the columns that are summed: those that
-    /// were, and those where a flat piece lies between the bricks, whose surface begins above.
-    uint64_t carry_volumes(const TileSurface& object, const PiecesOfBrick& pieces, uint64_t summed,
-                           const ColumnWinding& winding) {
-        for (uint64_t left = pieces.columns; left != 0; left &= left - 1) {
-            const int bit = std::countr_zero(left);
-            const double carried = object.pieces(pieces, bit)[kBrickSide];
-            if (carried == 0)
-                continue;
-            if ((summed >> bit & 1) == 0)
-                below_[bit] = winding.at(bit);
-            below_[bit] += carried;
-            summed |= uint64_t{1} << bit;
-        }
-        return summed;
-    }
-
-    /// Finds the volumes of the voxels of a slice that have surface.
-    void add_volumes(const TileSurface& object, const PiecesOfBrick* pieces, uint64_t surface,
-                     std::array<double, kBrickVoxels>* volumes, int z) {
-        const uint64_t with_pieces = pieces ? pieces->columns : 0;
-        for (uint64_t left = surface; left != 0; left &= left - 1) {
-            const int bit = std::countr_zero(left);
-            if (with_pieces >> bit & 1)
-                below_[bit] += object.pieces(*pieces, bit)[size_t(z)];
-            (*volumes)[size_t(z * 64 + bit)] = std::min(std::abs(below_[bit]), 1.0);
-        }
     }
 
     void claim_run(TileVoxels& tile, int column, int from, int to, uint64_t inside, uint8_t interior, Claim& result) {
@@ -356,7 +326,8 @@ private:
             const uint64_t by_centre = (within[z] | on[z]) & ~voxels[z] & ~undecided[z];
             filled[z] = (hidden[z] | held[z] | by_centre) & touched[z];
         }
-        lone_->decide_halves(column, k, voxels, undecided, touched, filled);
+        if (by_volume_ != 0 || brick.undecided != kNone)
+            lone_->decide_halves(column, k, voxels, undecided, touched, filled);
         lone_->add(column, k, touched, filled);
         return filled;
     }
@@ -392,7 +363,7 @@ private:
     const ColumnSheets* sheets_ = nullptr;
     uint64_t by_volume_ = 0; // columns of a brick column where volumes decide
     bool is_capped_ = false;
-    std::array<double, 64> below_{}; // by column: the volume below the slice, per voxel
+    VolumeSums sums_;
     std::vector<RepeatedCrossing> repeated_;
     GeneralizedInside inside_;
     std::vector<int> numbers_; // winding numbers of the capped surface in a brick, by slice and bit
