@@ -9,44 +9,33 @@
 
 namespace voxrt::voxelize {
 
-/// Receiver of add_pieces that takes those of a sheet in some columns. It calls take(x, y, z, area, volume); x and y
-/// are from the tile's lowest column.
-template <class Take> class SheetPieces {
+/// Receiver of add_pieces for a triangle of a sheet: adds to the volumes of the columns with voxels in doubt, or takes
+/// pieces in doubtful columns to the surface.
+class SheetPieces {
 public:
-    SheetPieces(const ColumnSheets::Rows& columns, const Window& window, Take take)
-        : columns_(columns), window_(window), take_(take) {}
+    SheetPieces(ColumnSheets& sheets, bool sheet, bool halves, const Window& window, TileSurface& surface)
+        : sheets_(sheets), sheet_(sheet), halves_(halves), columns_(halves ? sheets.halved[sheet] : sheets.doubtful),
+          window_(window), surface_(surface) {}
     bool wants(int y) const { return columns_[size_t(y - window_.y0)] != 0; }
     bool wants(int x, int y) const { return columns_[size_t(y - window_.y0)] >> (x - window_.x0) & 1; }
     void add_piece(int x, int y, int z, double area, double volume) {
-        take_(x - window_.x0, y - window_.y0, z, area, volume);
+        if (!halves_) {
+            surface_.add_piece(x, y, z, area, volume);
+            return;
+        }
+        const int place = (y - window_.y0) * kTileSide + x - window_.x0;
+        for (int n = 0; n <= sheets_.voxels[sheet_][place]; ++n)
+            if (const int above = sheets_.first[sheet_][place] + n - z - 1; above >= 0)
+                sheets_.volumes[sheet_][n][place] += (sheet_ ? 1 : -1) * (volume + area * above);
     }
 
 private:
+    ColumnSheets& sheets_;
+    bool sheet_, halves_;
     const ColumnSheets::Rows& columns_;
     const Window& window_;
-    Take take_;
+    TileSurface& surface_;
 };
-
-/// Adds what triangle abc adds to its sheet's volumes.
-inline void add_to_halved(const Vertex& a, const Vertex& b, const Vertex& c, bool sheet, const Window& window,
-                          ColumnSheets& sheets) {
-    SheetPieces receiver(sheets.halved[sheet], window, [&](int x, int y, int z, double area, double volume) {
-        const int place = y * kTileSide + x;
-        for (int n = 0; n <= sheets.voxels[sheet][place]; ++n)
-            if (const int above = sheets.first[sheet][place] + n - z - 1; above >= 0)
-                sheets.volumes[sheet][n][place] += (sheet ? 1 : -1) * (volume + area * above);
-    });
-    add_pieces(a, b, c, window, receiver);
-}
-
-/// Adds its pieces in doubtful columns to the surface.
-inline void add_to_doubtful(const Vertex& a, const Vertex& b, const Vertex& c, const Window& window,
-                            const ColumnSheets& sheets, TileSurface& surface) {
-    SheetPieces receiver(sheets.doubtful, window, [&](int x, int y, int z, double area, double volume) {
-        surface.add_piece(x + window.x0, y + window.y0, z, area, volume);
-    });
-    add_pieces(a, b, c, window, receiver);
-}
 
 /// Moves the crossings of columns with voxels in doubt. Those whose volumes are nearer to a half than `error` are left
 /// undecided. Columns where a guess was wrong become doubtful.

@@ -178,10 +178,10 @@ private:
             cover<false>(part, analysis, capped, *vertices, triangles, window, false, nullptr, s.surface);
         if (sheets != nullptr) {
             engine_.find_doubts(*sheets, window.top);
-            add_to_sheets<true>(*part.mesh, *vertices, triangles, window, *sheets, s.surface);
+            add_to_sheets(true, *part.mesh, *vertices, triangles, window, *sheets, s.surface);
             place_half_crossings(*sheets, s.lone->error_bound(), s.surface);
             if (sheets->has_doubtful())
-                add_to_sheets<false>(*part.mesh, *vertices, triangles, window, *sheets, s.surface);
+                add_to_sheets(false, *part.mesh, *vertices, triangles, window, *sheets, s.surface);
         }
         s.seconds.coverage += lap();
         const bool has_holes = capped != nullptr && !capped->cap_winding.empty();
@@ -289,8 +289,7 @@ private:
     }
 
     /// Adds volumes to sheets, or pieces in doubtful columns to the surface.
-    template <bool halves>
-    void add_to_sheets(const MeshView& mesh, const std::vector<Vertex>& vertices,
+    void add_to_sheets(bool halves, const MeshView& mesh, const std::vector<Vertex>& vertices,
                        std::span<const BinnedTriangle> triangles, const Window& window, ColumnSheets& sheets,
                        TileSurface& surface) const {
         const auto add = [&](size_t t) {
@@ -302,12 +301,12 @@ private:
                                        columns_near(a, b, c, window)) ||
                 is_upright(a, b, c))
                 return;
-            if (fits_vectors(a, b, c) && fits_pieces(a, b, c, window.top, piece_limit_))
+            if (fits_vectors(a, b, c) && fits_pieces(a, b, c, window.top, piece_limit_)) {
                 (halves ? engine_.add_to_halved : engine_.add_to_doubtful)(a, b, c, window, sheets, surface);
-            else if (halves)
-                add_to_halved(a, b, c, sheet, window, sheets);
-            else
-                add_to_doubtful(a, b, c, window, sheets, surface);
+            } else {
+                SheetPieces receiver(sheets, sheet, halves, window, surface);
+                add_pieces(a, b, c, window, receiver);
+            }
         };
         for_each_triangle(mesh, nullptr, vertices, triangles, window, add, [](size_t) {});
     }
