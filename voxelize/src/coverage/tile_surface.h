@@ -29,7 +29,7 @@ struct ShellBrick {
     uint32_t transparent = kNone; // row of voxels with fully transparent surface, where there is some
     uint32_t held = kNone;        // row of voxels that the surface fills under every rule, where there are some
     uint32_t on = kNone;          // row of voxels whose centre lies on a triangle, where volumes may decide instead
-    uint32_t asked = kNone;       // row of voxels whose volumes are found, where not all are
+    uint32_t undecided = kNone;   // row of voxels that sums of volumes leave undecided, where crossings decide
     uint32_t mixed = kNone;       // row of voxels with surface of another material, where this is wanted
     uint32_t pieces = kNone;      // row of what triangles add to volumes, where it is wanted
     uint8_t material = 0;         // the shell's only material, else 0
@@ -38,28 +38,16 @@ struct ShellBrick {
     bool has_shell() const { return material != 0 || cells != kNone; }
 };
 
-/// What the triangles of a brick add to the volume of a voxel and of all above, by column and slice; the last slice is
+/// What the triangles of a column of a brick add to the volume of a voxel and of all above, by slice; the last slice is
 /// the lowest of the brick above.
-class VolumePieces {
-public:
-    VolumePieces() : columns_(0) {} // no memory is written of columns without pieces
+using VolumePieces = std::array<double, kBrickSide + 1>;
 
-    /// A column's slices, to be added to.
-    double* column(int bit) {
-        double* const slices = &values_[size_t(bit * kSlices)];
-        if ((columns_ >> bit & 1) == 0)
-            std::fill_n(slices, kSlices, 0.0);
-        columns_ |= uint64_t{1} << bit;
-        return slices;
-    }
-    /// The columns with pieces.
-    uint64_t columns() const { return columns_; }
-    double at(int bit, int z) const { return values_[size_t(bit * kSlices + z)]; }
+/// Which columns of a brick have pieces, and where these are.
+struct PiecesOfBrick {
+    PiecesOfBrick() : columns(0) {} // no memory is written of columns without pieces
 
-private:
-    static constexpr int kSlices = kBrickSide + 1;
-    uint64_t columns_; // by bit
-    std::array<double, size_t{64} * kSlices> values_;
+    uint64_t columns; // by bit
+    std::array<uint32_t, 64> rows;
 };
 
 /// A crossing whose bit is already set.
@@ -94,6 +82,7 @@ public:
         cells_.clear();
         rows_.clear();
         pieces_.clear();
+        bricks_with_pieces_.clear();
         repeated_.clear();
         x_ = x;
         y_ = y;
@@ -165,17 +154,16 @@ public:
                       uint64_t{1} << (at_column.shift + (z & (kBrickSide - 1))), enters);
     }
 
-    /// Voxels lo … hi of column (x, y) may get pieces.
-    void ask(int x, int y, int lo, int hi) {
-        for (int z = lo; z <= hi; ++z)
-            row_of(at(locate(x, y).column, z >> kBrickBits).asked)[z & (kBrickSide - 1)] |=
-                uint64_t{1} << column_bit(x - x_, y - y_);
-    }
+    /// Takes note_on_centre() back. As below, x and y are from the tile's lowest column; z may be outside the grid.
+    void forget_on_centre(int x, int y, int z);
+    /// Sums of volumes leave a voxel undecided where crossings tell of the others.
+    void leave_undecided(int x, int y, int z);
+    /// Moves a column's only crossing among voxels `first` … `last` to voxel `to`.
+    void move_crossing(int x, int y, int first, int last, int to, bool enters);
 
     /// Receives from add_pieces which columns have pieces.
     bool wants(int) const { return true; }
     bool wants(int, int) const { return true; }
-    void begin_column(int, int, int, int) {}
     /// The same for what a triangle adds to the volume of voxel z, and to each above.
     void add_piece(int x, int y, int z, double area, double volume);
 
@@ -221,7 +209,8 @@ public:
     const std::vector<RepeatedCrossing>& repeated_crossings() const { return repeated_; }
     uint32_t index_of(const ShellBrick& brick) const { return uint32_t(&brick - bricks_.data()); }
     const Cells& cells(uint32_t row) const { return cells_[row]; }
-    const VolumePieces& pieces(uint32_t row) const { return pieces_[row]; }
+    const PiecesOfBrick& pieces(uint32_t row) const { return bricks_with_pieces_[row]; }
+    const VolumePieces& pieces(const PiecesOfBrick& brick, int bit) const { return pieces_[brick.rows[size_t(bit)]]; }
 
     /// The voxels of a brick that have surface: its shell, and what is fully transparent.
     Slices all_surface(const ShellBrick& brick, const Slices& shell) const {
@@ -238,25 +227,30 @@ public:
     /// The voxels of a brick whose centres lie on triangles that are in sheets.
     Slices on_centres(const ShellBrick& brick) const { return brick.on == kNone ? Slices{} : rows_[brick.on]; }
 
-    /// The voxels of a brick that have got pieces, and those that may get none where others do.
-    Slices asked(const ShellBrick& brick) const { return brick.asked == kNone ? Slices{} : rows_[brick.asked]; }
-
-    /// Whether it is noted which voxels get pieces.
-    void note_asked(bool noted) { notes_asked_ = noted; }
+    /// The voxels of a brick that leave_undecided() has got.
+    Slices undecided(const ShellBrick& brick) const {
+        return brick.undecided == kNone ? Slices{} : rows_[brick.undecided];
+    }
 
     /// The voxels of a brick with surface of several materials.
     Slices mixed(const ShellBrick& brick) const { return brick.mixed == kNone ? Slices{} : rows_[brick.mixed]; }
 
 private:
-    /// The pieces of a brick, made where there are none.
-    VolumePieces& pieces_of(ShellBrick& brick) {
+    /// The pieces of a column of a brick, made where there are none.
+    VolumePieces& pieces_of(ShellBrick& brick, int bit) {
         if (brick.pieces == kNone) {
-            brick.pieces = uint32_t(pieces_.size());
+            brick.pieces = uint32_t(bricks_with_pieces_.size());
+            bricks_with_pieces_.emplace_back();
+        }
+        PiecesOfBrick& own = bricks_with_pieces_[brick.pieces];
+        uint32_t& row = own.rows[size_t(bit)];
+        if ((own.columns >> bit & 1) == 0) {
+            own.columns |= uint64_t{1} << bit;
+            row = uint32_t(pieces_.size());
             pieces_.emplace_back();
         }
-        return pieces_[brick.pieces];
+        return pieces_[row];
     }
-    VolumePieces& pieces_at(int column, int k) { return pieces_of(at(column, k)); }
 
     Slices& row_of(uint32_t& row) {
         if (row == kNone) {
@@ -330,13 +324,14 @@ private:
     int side_, height_;
     int x_ = 0, y_ = 0;
     uint8_t material_ = 0;
-    bool notes_mixed_ = false, notes_asked_ = false;
+    bool notes_mixed_ = false;
     std::vector<uint32_t> table_;
     std::vector<ShellBrick> bricks_;
     std::vector<uint32_t> slots_;
     std::vector<Cells> cells_;
+    std::vector<PiecesOfBrick> bricks_with_pieces_;
     std::vector<VolumePieces> pieces_;
-    std::vector<Slices> rows_; // of voxels with transparent surface, held, or mixed
+    std::vector<Slices> rows_; // of some of a brick's voxels
     std::vector<RepeatedCrossing> repeated_;
 };
 

@@ -65,7 +65,7 @@ const std::vector<CoverageEngine>& coverage_engines() {
             found.push_back(kAvx2Coverage);
 #endif
 #if defined(__wasm__)
-        found.push_back({"portable", nullptr, nullptr, nullptr});
+        found.push_back({"portable", nullptr, nullptr, nullptr, nullptr});
 #else
         found.push_back(kPortableCoverage);
 #endif

@@ -42,18 +42,19 @@ struct Wanted {
 using CoverByVectors = void (*)(const Vertex& a, const Vertex& b, const Vertex& c, const Window& window,
                                 const Wanted& wanted, TileSurface& surface);
 
-/// Finds which columns need volumes. `top`: the grid's last voxel along z.
-using FindNeeded = void (*)(ColumnSheets& sheets, int top);
+/// Finds which voxels are in doubt. `top`: the grid's last voxel along z.
+using FindDoubts = void (*)(ColumnSheets& sheets, int top);
 
-/// Adds the pieces of triangle abc in the columns of its sheet that need volumes. It fits_pieces() and is not upright.
-using AddNeededPieces = void (*)(const Vertex& a, const Vertex& b, const Vertex& c, const Window& window,
-                                 const ColumnSheets& sheets, TileSurface& surface);
+/// Adds what triangle abc adds to its sheet's volumes, or pieces in doubtful columns to the surface. The triangle
+/// fits_pieces().
+using AddToSheet = void (*)(const Vertex& a, const Vertex& b, const Vertex& c, const Window& window,
+                            ColumnSheets& sheets, TileSurface& surface);
 
 struct CoverageEngine {
     const char* instructions;
     CoverByVectors cover_by_vectors;
-    FindNeeded find_needed;
-    AddNeededPieces add_needed_pieces;
+    FindDoubts find_doubts;
+    AddToSheet add_to_halved, add_to_doubtful;
 };
 extern const CoverageEngine kPortableCoverage;
 #if defined(__x86_64__)

@@ -12,7 +12,7 @@
 #include "../vectors/lanes.h"
 #include "covered_bytes.h"
 #include "vector_coverage.h"
-#include "vector_pieces.h"
+#include "vector_halves.h"
 #include "vector_plane.h"
 #include "vector_sheets.h"
 
@@ -99,9 +99,8 @@ struct Extents {
     }
 };
 
-// The rows of a triangle in a window: which columns it may cover, and whose rays it crosses; where it is along z, if
-// this is wanted.
-template <bool along_z> struct Rows {
+// The rows of a triangle in a window: which columns it may cover, whose rays it crosses, and where it is along z.
+struct Rows {
     Extents z;
     alignas(32) int32_t from[kTileSide + kLanes], to[kTileSide + kLanes]; // columns
     alignas(32) int32_t crossed_from[kTileSide + kLanes], crossed_to[kTileSide + kLanes];
@@ -117,27 +116,22 @@ template <bool along_z> struct Rows {
                 const Lanes along = edge.to_planes(planes);
                 const Passing across(edge, t.x);
                 eight_x.extend(across.upper(along), across.lower(along));
-                if constexpr (along_z) {
-                    const Passing upwards(edge, t.z);
-                    eight_z.extend(upwards.upper(along), upwards.lower(along));
-                }
+                const Passing upwards(edge, t.z);
+                eight_z.extend(upwards.upper(along), upwards.lower(along));
                 if (crosses) {
                     const Lanes beyond = across.first_ray_beyond(edge.to_planes(rays), ray);
                     eight_ends.extend(beyond, beyond);
                 }
             }
             x.set(base, eight_x);
-            if constexpr (along_z)
-                z.set(base, eight_z);
+            z.set(base, eight_z);
             ends.set(base, eight_ends);
         }
         x.join(count);
-        if constexpr (along_z)
-            z.join(count);
+        z.join(count);
         for (int i = 0; i < 3; ++i) {
             x.extend(y0, count, t.y[i], t.x[i]);
-            if constexpr (along_z)
-                z.extend(y0, count, t.y[i], t.z[i]);
+            z.extend(y0, count, t.y[i], t.z[i]);
         }
         const Lanes bottom = all(t.bottom), one = all(1);
         for (int base = 0; base < count; base += kLanes) {
@@ -147,10 +141,8 @@ template <bool along_z> struct Rows {
             store_as_int(to + base, last);
             store_as_int(crossed_from + base, larger(eight_ends.lo, first));
             store_as_int(crossed_to + base, smaller(eight_ends.hi - one, last));
-            if constexpr (along_z) {
-                const EightExtents eight_z = z.at(base);
-                z.set(base, {eight_z.lo + bottom, smaller(eight_z.hi + bottom, all(top))});
-            }
+            const EightExtents eight_z = z.at(base);
+            z.set(base, {eight_z.lo + bottom, smaller(eight_z.hi + bottom, all(top))});
         }
     }
 };
@@ -213,7 +205,7 @@ template <class Wide, class Rest, bool centres>
 inline void cover_area(const Corners& t, const Area& area, const Wanted& wanted, Pieces* pieces, TileSurface& surface) {
     const auto [x0, x1, y0, y1, top] = area;
     const int first_group = x0 / kLanes, first_column = first_group * kLanes;
-    const Rows<true> rows(t, y0, y1 - y0 + 1, x0, x1, top, wanted.crosses, centres ? kCentre : kSample);
+    const Rows rows(t, y0, y1 - y0 + 1, x0, x1, top, wanted.crosses, centres ? kCentre : kSample);
     Extents columns;
     find_columns(t, first_column, x1 - first_column + 1, columns);
     PlaneRows<Wide, Rest> plane(t, first_column, y0);
@@ -244,10 +236,12 @@ inline void cover_area(const Corners& t, const Area& area, const Wanted& wanted,
                 Mask on;
                 Lanes heights;
                 const Lanes below = smaller(larger(plane.centres(on, heights), all(-kBeyond)), all(kBeyond));
-                if (wanted.sheets != nullptr)
-                    extend_group(*wanted.sheets, plane.enters(), y * kTileSide + group * kLanes,
-                                 covered >> group * kLanes & 0xFF, before >> group * kLanes & 0xFF, heights,
-                                 plane.slope_x() / 2, plane.slope_y() / 2);
+                if (wanted.sheets != nullptr) {
+                    const int shift = group * kLanes;
+                    extend_group(*wanted.sheets, plane.enters(), y * kTileSide + shift, covered >> shift,
+                                 before >> shift, crossed >> shift, floats(heights), plane.slope_x() / 2,
+                                 plane.slope_y() / 2);
+                }
                 store_as_int(above, if_less(below, all(top), below + all(1), all(kBeyond)));
                 uint64_t held = wanted.holds ? on & (covered >> group * kLanes) : 0;
                 for (alignas(64) double voxels[kLanes]; held != 0; held &= held - 1) {
@@ -288,14 +282,6 @@ inline bool is_wound_clockwise(const Corners& t) {
     return (t.x[1] - t.x[0]) * (t.y[2] - t.y[0]) < (t.y[1] - t.y[0]) * (t.x[2] - t.x[0]);
 }
 
-// Voxels from a triangle's lowest to its highest.
-inline int voxels_high(const Corners& t) {
-    double high = t.z[0];
-    for (int i = 1; i < 3; ++i)
-        high = t.z[i] > high ? t.z[i] : high;
-    return voxel_below(static_cast<int64_t>(high));
-}
-
 // A triangle in a window, and which part of the window may hold it.
 struct Placed {
     Corners corners;
@@ -329,9 +315,9 @@ struct Placed {
     }
 };
 
-Pieces pieces_of(const Placed& placed, const Vertex& a, const Vertex& b, const Vertex& c, TileSurface& surface) {
+CutTriangle cut_triangle(const Placed& placed, const Vertex& a, const Vertex& b, const Vertex& c) {
     const double z[3] = {static_cast<double>(a.z), static_cast<double>(b.z), static_cast<double>(c.z)};
-    return Pieces(placed.corners.x, placed.corners.y, z, surface);
+    return {placed.corners.x, placed.corners.y, z};
 }
 
 void cover_by_vectors(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w, const Wanted& wanted,
@@ -347,60 +333,49 @@ void cover_by_vectors(const Vertex& a, const Vertex& b, const Vertex& c, const W
         cover(placed.corners, placed.area, wanted, nullptr, surface);
         return;
     }
-    Pieces pieces = pieces_of(placed, a, b, c, surface);
+    const CutTriangle cut = cut_triangle(placed, a, b, c);
+    Pieces pieces(cut, surface);
     cover(placed.corners, placed.area, wanted, &pieces, surface);
     pieces.finish();
 }
 
-void add_needed_pieces(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w, const ColumnSheets& sheets,
-                       TileSurface& surface) {
+template <bool halves>
+void add_to_sheet(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w, ColumnSheets& sheets,
+                  TileSurface& surface) {
     const Placed placed(a, b, c, w);
     if (placed.is_outside)
         return;
     const auto [x0, x1, y0, y1, top] = placed.area;
-    const bool enters = is_wound_clockwise(placed.corners);
-    const ColumnSheets::Rows& needed = sheets.needed[enters];
-    const uint64_t columns = bits_between(x0, x1);
-    uint64_t any = 0;
-    for (int y = y0; y <= y1; ++y)
-        any |= needed[static_cast<size_t>(y)] & columns;
+    const bool sheet = is_wound_clockwise(placed.corners);
+    const ColumnSheets::Rows& columns = halves ? sheets.halved[sheet] : sheets.doubtful;
+    const CoveredColumns covered(placed.corners.x, placed.corners.y, sheet);
+    uint64_t wanted[kTileSide], any = 0;
+    for (int y = y0; y <= y1; ++y) {
+        wanted[y] = 0;
+        for (uint64_t left = columns[static_cast<size_t>(y)] & bits_between(x0, x1); left != 0; left &= left - 1) {
+            const int x = __builtin_ctzll(left);
+            wanted[y] |= static_cast<uint64_t>(covered.has(x, y)) << x;
+        }
+        any |= wanted[y];
+    }
     if (any == 0)
         return;
-    const int first_group = x0 / kLanes;
-    const double low = placed.corners.bottom, high = placed.corners.bottom + voxels_high(placed.corners);
-    const Rows<false> rows(placed.corners, y0, y1 - y0 + 1, x0, x1, top, false, kCentre);
-    PlaneRows<int64_t, Lanes> plane(placed.corners, first_group * kLanes, y0);
-    Pieces pieces = pieces_of(placed, a, b, c, surface);
-    for (int y = y0; y <= y1; ++y, plane.end_row()) {
-        const int from = rows.from[y - y0], to = rows.to[y - y0];
-        const uint64_t left = needed[static_cast<size_t>(y)] & bits_between(from, to);
-        if (left == 0)
-            continue;
-        plane.begin_row();
-        for (int group = first_group; left >> group * kLanes != 0; ++group, plane.end_group()) {
-            const uint64_t here = left >> group * kLanes & 0xFF;
-            if (here == 0)
-                continue;
-            EightExtents z;
-            z.lo = all(low);
-            z.hi = all(high);
-            plane.narrow(z);
-            alignas(32) int32_t lo[kLanes], hi[kLanes];
-            alignas(64) double above_corners[kLanes];
-            z.lo = smaller(z.lo, all(kBeyond));
-            store_as_int(lo, z.lo);
-            store_as_int(hi, larger(z.hi, z.lo - all(1)));
-            store(above_corners, plane.above_corners(z.lo));
-            pieces.add_columns(here & ~uint64_t{less(z.hi, z.lo)}, group, y, lo, hi, above_corners);
-            if (group == kTileSide / kLanes - 1)
-                break;
-        }
-    }
-    pieces.finish();
+    const CutTriangle cut = cut_triangle(placed, a, b, c);
+    const auto add_all = [&](auto&& pieces) {
+        for (int y = y0; y <= y1; ++y)
+            for (uint64_t left = wanted[y]; left != 0; left &= left - 1)
+                pieces.add_column(__builtin_ctzll(left), y);
+        pieces.finish();
+    };
+    if constexpr (halves)
+        add_all(HalvedVoxels(cut, sheets, sheet));
+    else
+        add_all(Pieces(cut, surface));
 }
 
 } // namespace
 
-const CoverageEngine VOXRT_COVERAGE{VOXRT_INSTRUCTIONS, cover_by_vectors, find_needed, add_needed_pieces};
+const CoverageEngine VOXRT_COVERAGE{VOXRT_INSTRUCTIONS, cover_by_vectors, find_doubts, add_to_sheet<true>,
+                                    add_to_sheet<false>};
 
 } // namespace voxrt::voxelize

@@ -48,10 +48,11 @@ private:
     static Lanes in_column(const Lanes& v) { return larger(smaller(v, all(1)), all(0)); }
 };
 
-// A triangle's pieces in the columns of a tile. Coordinates are in voxels from the tile's lowest column.
-class Pieces {
+// A triangle over the columns of a tile, which planes between voxels cut. Coordinates are in voxels from the tile's
+// lowest column.
+class CutTriangle {
 public:
-    Pieces(const double (&x)[3], const double (&y)[3], const double (&z)[3], TileSurface& surface) : surface_(surface) {
+    CutTriangle(const double (&x)[3], const double (&y)[3], const double (&z)[3]) {
         int order[3] = {0, 1, 2}; // of corners, by height
         const auto sort = [&](int i, int j) {
             if (z[order[j]] < z[order[i]]) {
@@ -93,65 +94,64 @@ public:
         }
     }
 
-    // The triangle is in voxels lo ... hi of some columns of a group. `above`: how far its plane is above the lowest of
-    // these at the columns' lowest corners.
-    void add_columns(uint64_t columns, int group, int y, const int32_t* lo, const int32_t* hi, const double* above) {
-        for (; columns != 0; columns &= columns - 1) {
-            const int i = __builtin_ctzll(columns);
-            columns_.x[count_] = group * kLanes + i;
-            columns_.y[count_] = y;
-            columns_.z[count_] = lo[i];
-            columns_.voxels[count_] = hi[i] - lo[i] + 1;
-            above_[count_] = above[i];
-            if (++count_ == kLanes)
-                finish();
-        }
-    }
-
-    // Adds the columns that are left to the surface.
-    void finish() {
-        if (count_ == 0)
-            return;
-        int most = 0;
-        for (int i = 0; i < kLanes; ++i) {
-            const int from = i < count_ ? i : 0;
-            columns_.x[i] = columns_.x[from];
-            columns_.y[i] = columns_.y[from];
-            columns_.z[i] = columns_.z[from];
-            columns_.voxels[i] = columns_.voxels[from];
-            above_[i] = above_[from];
-            most = columns_.voxels[i] > most ? columns_.voxels[i] : most;
-        }
-        const Lanes left = load_ints(columns_.x), front = load_ints(columns_.y), lowest = load_ints(columns_.z),
-                    voxels = load_ints(columns_.voxels), above = load(above_);
+    // What eight columns see of it.
+    struct View {
         Line lines[3];
-        Lanes tops[3];
-        Moments whole;
+        Lanes ends[3];
+    };
+    View seen_from(const Lanes& left, const Lanes& front) const {
+        View view;
         for (int i = 0; i < 3; ++i) {
             const Edge& edge = edges_[i];
-            lines[i] = {all(edge.x) - left, all(edge.y) - front, edge.slope, edge.inverse};
-            tops[i] = all(edge.top_x) - left;
-            add_edge(whole, edge, lines[i], tops[i]);
+            view.lines[i] = {all(edge.x) - left, all(edge.y) - front, edge.slope, edge.inverse};
+            view.ends[i] = all(edge.top_x) - left;
         }
-        const Lanes whole_volume = volume_below(whole, voxels - above);
-        Lanes area_before = all(0), volume_before = all(0);
-        for (int n = 1; n <= most; ++n) {
-            Lanes area = whole.area, volume = whole_volume;
-            if (n < most) {
-                const Moments lower = below(lines, tops, lowest + all(n));
-                area = if_less(all(n), voxels, lower.area, area);
-                volume = if_less(all(n), voxels, volume_below(lower, all(n) - above), volume);
-            }
-            const int level = (n - 1) % ColumnPieces::kLevels;
-            store(columns_.areas[level], area - area_before);
-            store(columns_.volumes[level], volume - volume_before - area_before);
-            if (level == ColumnPieces::kLevels - 1 || n == most)
-                surface_.add_pieces(columns_, count_, n - 1 - level, n);
-            area_before = area;
-            volume_before = volume;
-        }
-        count_ = 0;
+        return view;
     }
+
+    // Measures it in the columns.
+    Moments whole(const View& view) const {
+        Moments found;
+        for (int i = 0; i < 3; ++i)
+            add_edge(found, edges_[i], view.lines[i], view.ends[i]);
+        return found;
+    }
+
+    // Measures what of it is lower than `height`.
+    Moments below(const View& view, const Lanes& height) const {
+        Moments found;
+        Lanes ends[3], climbs[3];
+        for (int i = 0; i < 3; ++i) {
+            climbs[i] = larger(height - all(edges_[i].z), all(0));
+            ends[i] = if_less(height, all(edges_[i].top_z), view.lines[i].x + climbs[i] * all(edges_[i].x_per_z),
+                              view.ends[i]);
+            add_edge(found, edges_[i], view.lines[i], ends[i]);
+        }
+        const Lanes end_y = view.lines[0].y + climbs[0] * all(edges_[0].y_per_z);
+        const Lanes other = if_less(height, all(middle_), ends[1], ends[2]);
+        const Line level{ends[0], end_y, level_slope_, level_inverse_};
+        found.add_below(level, turns_back_ ? other : ends[0], turns_back_ ? ends[0] : other);
+        return found;
+    }
+
+    // The volume between a part of it and a level that is so far above its plane at the columns' corners.
+    Lanes volume_below(const Moments& part, const Lanes& above) const {
+        return above * part.area - all(slope_x_) * part.x - all(slope_y_) * part.y;
+    }
+
+    // The height of its plane at a column's corner, and at those of eight.
+    double height(int x, int y) const {
+        return edges_[0].z + slope_x_ * (x - edges_[0].x) + slope_y_ * (y - edges_[0].y);
+    }
+    Lanes heights(const View& view) const {
+        const Line& line = view.lines[0];
+        return all(edges_[0].z) - all(slope_x_) * line.x - all(slope_y_) * line.y;
+    }
+    // How much the plane rises in a column, and how much its corner is above where the plane is lowest.
+    double rise() const { return __builtin_fabs(slope_x_) + __builtin_fabs(slope_y_); }
+    double fall() const { return (slope_x_ < 0 ? -slope_x_ : 0) + (slope_y_ < 0 ? -slope_y_ : 0); }
+    double lowest() const { return edges_[0].z; }
+    double highest() const { return edges_[0].top_z; }
 
 private:
     // An edge of the triangle, upwards.
@@ -173,33 +173,90 @@ private:
             moments.add_below(line, end, line.x);
     }
 
-    // Measures what of the triangle is lower than `height`, which is between its lowest corner and its highest.
-    Moments below(const Line (&lines)[3], const Lanes (&tops)[3], const Lanes& height) const {
-        Moments found;
-        Lanes ends[3], climbs[3];
-        for (int i = 0; i < 3; ++i) {
-            climbs[i] = larger(height - all(edges_[i].z), all(0));
-            ends[i] = if_less(height, all(edges_[i].top_z), lines[i].x + climbs[i] * all(edges_[i].x_per_z), tops[i]);
-            add_edge(found, edges_[i], lines[i], ends[i]);
-        }
-        const Lanes end_y = lines[0].y + climbs[0] * all(edges_[0].y_per_z);
-        const Lanes other = if_less(height, all(middle_), ends[1], ends[2]);
-        const Line level{ends[0], end_y, level_slope_, level_inverse_};
-        found.add_below(level, turns_back_ ? other : ends[0], turns_back_ ? ends[0] : other);
-        return found;
-    }
-
-    // The volume between a part of the triangle and a plane that is so far above it at the columns' corners.
-    Lanes volume_below(const Moments& part, const Lanes& above) const {
-        return above * part.area - all(slope_x_) * part.x - all(slope_y_) * part.y;
-    }
-
-    TileSurface& surface_;
     Edge edges_[3];
     double middle_;                      // the height of the corner between the others
     double slope_x_, slope_y_;           // z per x and y
     double level_slope_, level_inverse_; // y per x and x per y where z does not change
     bool turns_back_;                    // the corners run from the lowest to the middle one
+};
+
+// A triangle's pieces in all voxels of columns.
+class Pieces {
+public:
+    Pieces(const CutTriangle& triangle, TileSurface& surface) : triangle_(triangle), surface_(surface) {}
+
+    // The triangle is in voxels lo ... hi of some columns of a group. `above`: how far its plane is above the lowest of
+    // these at the columns' corners.
+    void add_columns(uint64_t columns, int group, int y, const int32_t* lo, const int32_t* hi, const double* above) {
+        for (; columns != 0; columns &= columns - 1) {
+            const int i = __builtin_ctzll(columns);
+            add_column(group * kLanes + i, y, lo[i], hi[i], above[i]);
+        }
+    }
+    // A column that it covers.
+    void add_column(int x, int y) {
+        const double height = triangle_.height(x, y), bottom = height - triangle_.fall();
+        const double top = bottom + triangle_.rise(), highest = triangle_.highest();
+        const int lo = voxel_at(bottom > triangle_.lowest() ? bottom : triangle_.lowest());
+        const int hi = -voxel_at(-(top < highest ? top : highest)) - 1;
+        add_column(x, y, lo, hi > lo ? hi : lo, height - lo);
+    }
+    void add_column(int x, int y, int lo, int hi, double above) {
+        columns_.x[count_] = x;
+        columns_.y[count_] = y;
+        columns_.z[count_] = lo;
+        columns_.voxels[count_] = hi - lo + 1;
+        above_[count_] = above;
+        if (++count_ == kLanes)
+            finish();
+    }
+
+    // Adds the columns that are left to the surface.
+    void finish() {
+        if (count_ == 0)
+            return;
+        int most = 0;
+        for (int i = 0; i < kLanes; ++i) {
+            const int from = i < count_ ? i : 0;
+            columns_.x[i] = columns_.x[from];
+            columns_.y[i] = columns_.y[from];
+            columns_.z[i] = columns_.z[from];
+            columns_.voxels[i] = columns_.voxels[from];
+            above_[i] = above_[from];
+            most = columns_.voxels[i] > most ? columns_.voxels[i] : most;
+        }
+        const Lanes lowest = load_ints(columns_.z), voxels = load_ints(columns_.voxels), above = load(above_);
+        const CutTriangle::View view = triangle_.seen_from(load_ints(columns_.x), load_ints(columns_.y));
+        const Moments whole = triangle_.whole(view);
+        const Lanes whole_volume = triangle_.volume_below(whole, voxels - above);
+        Lanes area_before = all(0), volume_before = all(0);
+        for (int n = 1; n <= most; ++n) {
+            Lanes area = whole.area, volume = whole_volume;
+            if (n < most) {
+                const Moments lower = triangle_.below(view, lowest + all(n));
+                area = if_less(all(n), voxels, lower.area, area);
+                volume = if_less(all(n), voxels, triangle_.volume_below(lower, all(n) - above), volume);
+            }
+            const int level = (n - 1) % ColumnPieces::kLevels;
+            store(columns_.areas[level], area - area_before);
+            store(columns_.volumes[level], volume - volume_before - area_before);
+            if (level == ColumnPieces::kLevels - 1 || n == most)
+                surface_.add_pieces(columns_, count_, n - 1 - level, n);
+            area_before = area;
+            volume_before = volume;
+        }
+        count_ = 0;
+    }
+
+private:
+    // The voxel whose bottom is at or below a height.
+    static int voxel_at(double height) {
+        const int whole = static_cast<int>(height);
+        return whole - (height < whole);
+    }
+
+    const CutTriangle& triangle_;
+    TileSurface& surface_;
     int count_ = 0;
     ColumnPieces columns_;
     alignas(64) double above_[kLanes];

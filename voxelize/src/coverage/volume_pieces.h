@@ -245,7 +245,6 @@ void add_pieces(const Vertex& a, const Vertex& b, const Vertex& c, const Window&
     auto add_column = [&](int x, int y, const Polygon<Number>& column) {
         // A flat piece between two voxels counts for the lower one, where it adds no volume.
         const int high = column.highest(2), low = std::min(column.lowest(2), high);
-        receiver.begin_column(x + t.bx, y + t.by, low + t.bz, high + t.bz);
         const Polygon<double> local = column.from(x, y, low);
         if (high == low + 1) { // most columns: the upper piece is what the lower one leaves
             const Polygon<double> lower = local.slab(2, 0);
@@ -270,7 +269,6 @@ void add_pieces(const Vertex& a, const Vertex& b, const Vertex& c, const Window&
     const double facing = -static_cast<double>(sign);
     auto add_whole_cell = [&](int x, int y) {
         const auto [low, high, begin] = plane.over(x, y);
-        receiver.begin_column(x + t.bx, y + t.by, std::min(low, high) + t.bz, high + t.bz);
         if (low >= high) {
             report(x, y, high, facing, facing * (high + 1 - low - (begin + plane.cell().middle())));
             return;
@@ -310,7 +308,6 @@ void add_pieces(const Vertex& a, const Vertex& b, const Vertex& c, const Window&
 /// Reports to a receiver what triangle abc adds to the volume in the columns of a window.
 ///
 /// receiver.wants(y), receiver.wants(x, y): whether it wants pieces of a row, and of a column.
-/// receiver.begin_column(x, y, low, high): those of a column follow; they are in voxels low … high.
 /// receiver.add_piece(x, y, z, area, volume): `volume` to voxel z of column (x, y), `area` to each voxel above, in
 /// voxels.
 template <class Receiver>

@@ -28,9 +28,12 @@ public:
     /// Where the volumes of a brick are to be written, by slice and bit, before it is added.
     std::array<double, kBrickVoxels>& volumes() { return volumes_; }
 
-    /// Fills those of some voxels whose volumes are a half or more.
-    void decide_halves(int column, int k, const Slices& voxels, const Slices& touched, Slices& filled) {
-        const Slices near = fill_halves(volumes_, voxels, error_, filled);
+    /// Fills those of some voxels whose volumes are a half or more. `undecided`: others that may be.
+    void decide_halves(int column, int k, const Slices& voxels, const Slices& undecided, const Slices& touched,
+                       Slices& filled) {
+        Slices near = fill_halves(volumes_, voxels, error_, filled);
+        for (int z = 0; z < kBrickSide; ++z)
+            near[z] |= undecided[z] & touched[z];
         if (is_empty(near))
             return;
         doubts_.push_back({bricks_.size(), column, k, near});

@@ -16,6 +16,7 @@
 #include "lone_rule.h"
 #include "rule_tile.h"
 #include "tile_voxels.h"
+#include "volume_sums.h"
 
 #include <algorithm>
 #include <bit>
@@ -93,6 +94,7 @@ public:
                              const VoxelBox& box, const Window& window) {
         Claim result;
         is_capped_ = true;
+        by_volume_ = 0;
         sort_repeated(object);
         inside_.reset(caps, box, window);
         for (int column = 0; column < kTileColumns; ++column)
@@ -133,46 +135,42 @@ private:
         count_work(20 * uint32_t(object.height()));
         ColumnWinding winding;
         const int slices = std::min(object.side(), kBrickSide);
-        const bool has_volumes = lone_ ? lone_->asks_for_volumes() : rule_ && rule_->asks_for_volumes();
-        const uint64_t doubtful = has_volumes && sheets_ ? columns_of(sheets_->doubtful, column) : ~uint64_t{0};
-        uint64_t summed = 0; // columns whose volume is summed in below_: the last slice had surface there
+        by_volume_ = !(lone_ ? lone_->asks_for_volumes() : rule_ && rule_->asks_for_volumes()) ? 0
+                     : sheets_ ? columns_of(sheets_->doubtful, column)
+                               : ~uint64_t{0};
+        const bool has_volumes = by_volume_ != 0;
+        sums_.clear();
         while (k < object.height()) {
             const ShellBrick* brick = object.find(column, k);
             if (brick == nullptr) {
                 const int end = k > highest ? object.height() : object.next_brick(column, k, highest);
                 claim_run(tile, column, k, end, winding.inside(), interior, result);
                 result.note(winding, 0);
-                summed = 0;
+                sums_.clear();
                 k = end;
                 continue;
             }
             Slices within{};
             const Slices shell = slices_of(brick->shell);
             Slices surface = has_volumes ? object.all_surface(*brick, shell) : Slices{};
-            if (has_volumes && sheets_) {
-                const Slices asked = object.asked(*brick);
-                for (int z = 0; z < kBrickSide; ++z)
-                    surface[z] = asked[z] | (surface[z] & doubtful);
-                summed_voxels_ = surface;
-            }
+            for (uint64_t& slice : surface)
+                slice &= by_volume_;
             const Crossings crossings(*brick);
             const uint32_t index = object.index_of(*brick);
-            const VolumePieces* pieces = brick->pieces == kNone ? nullptr : &object.pieces(brick->pieces);
+            const PiecesOfBrick* pieces = brick->pieces == kNone ? nullptr : &object.pieces(brick->pieces);
             std::array<double, kBrickVoxels>* volumes = !has_volumes ? nullptr
                                                         : lone_      ? &lone_->volumes()
                                                                      : &rule_->room_for_volumes(column, k);
             for (int z = 0; z < slices; ++z) {
-                // Below its surface a solid fills as many voxels as the winding number says, which has no rounding.
-                for (uint64_t begun = surface[z] & ~summed; begun != 0; begun &= begun - 1)
-                    below_[std::countr_zero(begun)] = winding.at(std::countr_zero(begun));
-                summed = surface[z];
+                sums_.begin(surface[z], winding);
                 advance(winding, crossings, index, brick->has_repeated, z);
                 within[z] = winding.inside();
                 result.note(winding, shell[z]);
-                add_volumes(pieces, surface[z], volumes, z);
+                if (surface[z] != 0)
+                    sums_.add(object, pieces, surface[z], *volumes, z);
             }
             if (pieces)
-                summed = carry_volumes(*pieces, summed, winding);
+                sums_.carry(object, *pieces, winding);
             claim_brick(tile, object, column, k, *brick, within, interior, result);
             ++k;
         }
@@ -186,33 +184,6 @@ private:
             found |= (rows[size_t(column / kTileBricks * kBrickSide + y)] >> column % kTileBricks * kBrickSide & 0xFF)
                      << kBrickSide * y;
         return found;
-    }
-
-    /// Adds to `below_` what pieces of a brick add to the brick above. Returns the columns that are summed: those that
-    /// were, and those where a flat piece lies between the bricks, whose surface begins above.
-    uint64_t carry_volumes(const VolumePieces& pieces, uint64_t summed, const ColumnWinding& winding) {
-        for (uint64_t left = pieces.columns(); left != 0; left &= left - 1) {
-            const int bit = std::countr_zero(left);
-            const double carried = pieces.at(bit, kBrickSide);
-            if (carried == 0)
-                continue;
-            if ((summed >> bit & 1) == 0)
-                below_[bit] = winding.at(bit);
-            below_[bit] += carried;
-            summed |= uint64_t{1} << bit;
-        }
-        return summed;
-    }
-
-    /// Finds the volumes of the voxels of a slice that have surface.
-    void add_volumes(const VolumePieces* pieces, uint64_t surface, std::array<double, kBrickVoxels>* volumes, int z) {
-        const uint64_t with_pieces = pieces ? pieces->columns() : 0;
-        for (uint64_t left = surface; left != 0; left &= left - 1) {
-            const int bit = std::countr_zero(left);
-            if (with_pieces >> bit & 1)
-                below_[bit] += pieces->at(bit, z);
-            (*volumes)[size_t(z * 64 + bit)] = std::min(std::abs(below_[bit]), 1.0);
-        }
     }
 
     void claim_run(TileVoxels& tile, int column, int from, int to, uint64_t inside, uint8_t interior, Claim& result) {
@@ -348,14 +319,15 @@ private:
     Slices lone_filled(int column, int k, const Slices& shell, const Slices& touched, const Slices& hidden,
                        const Slices& within, const TileSurface& object, const ShellBrick& brick) {
         const Slices held = object.held(brick), on = object.on_centres(brick);
-        const bool by_volume = lone_->asks_for_volumes() && !is_capped_;
+        const Slices undecided = object.undecided(brick);
         Slices filled, voxels;
         for (int z = 0; z < kBrickSide; ++z) {
-            voxels[z] = !by_volume ? 0 : sheets_ ? shell[z] & summed_voxels_[z] : shell[z];
-            filled[z] = (hidden[z] | held[z] | ((within[z] | on[z]) & ~voxels[z])) & touched[z];
+            voxels[z] = shell[z] & by_volume_;
+            const uint64_t by_centre = (within[z] | on[z]) & ~voxels[z] & ~undecided[z];
+            filled[z] = (hidden[z] | held[z] | by_centre) & touched[z];
         }
-        if (!is_empty(voxels))
-            lone_->decide_halves(column, k, voxels, touched, filled);
+        if (by_volume_ != 0 || brick.undecided != kNone)
+            lone_->decide_halves(column, k, voxels, undecided, touched, filled);
         lone_->add(column, k, touched, filled);
         return filled;
     }
@@ -389,9 +361,9 @@ private:
     RuleTile* rule_ = nullptr;
     LoneRule* lone_ = nullptr;
     const ColumnSheets* sheets_ = nullptr;
-    Slices summed_voxels_{}; // of a brick, with sheets
+    uint64_t by_volume_ = 0; // columns of a brick column where volumes decide
     bool is_capped_ = false;
-    std::array<double, 64> below_{}; // by column: the volume below the slice, per voxel
+    VolumeSums sums_;
     std::vector<RepeatedCrossing> repeated_;
     GeneralizedInside inside_;
     std::vector<int> numbers_; // winding numbers of the capped surface in a brick, by slice and bit

@@ -3,9 +3,9 @@
 
 #include "../coverage/centre_crossings.h"
 #include "../coverage/ellipsoid.h"
+#include "../coverage/half_crossings.h"
 #include "../coverage/material_raster.h"
 #include "../coverage/vector_coverage.h"
-#include "../coverage/volume_pieces.h"
 #include "convex_solids.h"
 #include "solid_fill.h"
 #include "tile_halves.h"
@@ -56,24 +56,6 @@ public:
 
 private:
     TileSurface& surface_;
-};
-
-/// Receiver of add_pieces that takes those in some columns, and notes which voxels have them.
-class NeededPieces {
-public:
-    NeededPieces(TileSurface& surface, const ColumnSheets::Rows& columns, const Window& window)
-        : surface_(surface), columns_(columns), window_(window) {}
-    bool wants(int y) const { return columns_[size_t(y - window_.y0)] != 0; }
-    bool wants(int x, int y) const { return columns_[size_t(y - window_.y0)] >> (x - window_.x0) & 1; }
-    void begin_column(int x, int y, int low, int high) {
-        surface_.ask(x, y, std::max(low - 1, 0), std::min(high + 1, window_.top));
-    }
-    void add_piece(int x, int y, int z, double area, double volume) { surface_.add_piece(x, y, z, area, volume); }
-
-private:
-    TileSurface& surface_;
-    const ColumnSheets::Rows& columns_;
-    const Window& window_;
 };
 
 class TileWorker : TileParts {
@@ -183,18 +165,24 @@ private:
         const CappedSurface* capped = capped_of(index, *vertices, own);
         s.seconds.holes += lap();
         // Sheets take a surface whose triangles meet along all their edges. Vectors alone find them (not on the page).
-        const bool has_sheets = engine_.cover_by_vectors != nullptr && analysis.closed &&
+        const bool has_sheets = engine_.cover_by_vectors != nullptr && fills(part.fill) && analysis.closed &&
                                 analysis.orientation == nullptr && capped == nullptr;
         ColumnSheets* sheets = has_sheets ? s.sheets.get() : nullptr;
         s.fill.use_sheets(sheets);
         if (sheets != nullptr)
             sheets->clear();
-        s.surface.note_asked(sheets != nullptr);
         if (fills(part.fill))
             cover<true>(part, analysis, capped, *vertices, triangles, window, part.rule != Rule::touch, sheets,
                         s.surface);
         else
             cover<false>(part, analysis, capped, *vertices, triangles, window, false, nullptr, s.surface);
+        if (sheets != nullptr) {
+            engine_.find_doubts(*sheets, window.top);
+            add_to_sheets(true, *part.mesh, *vertices, triangles, window, *sheets, s.surface);
+            place_half_crossings(*sheets, s.lone->error_bound(), s.surface);
+            if (sheets->has_doubtful())
+                add_to_sheets(false, *part.mesh, *vertices, triangles, window, *sheets, s.surface);
+        }
         s.seconds.coverage += lap();
         const bool has_holes = capped != nullptr && !capped->cap_winding.empty();
         if (s.surface.empty() && !has_holes)
@@ -277,7 +265,7 @@ private:
                         if (wanted.centres)
                             wanted.sheets = sheets;
                         else
-                            doubt_columns(a, b, c, window, *sheets);
+                            sheets->doubt(columns_near(a, b, c, window));
                     }
                     if (counts && has_caps)
                         cross_triangle(a, b, c, window, surface);
@@ -298,36 +286,38 @@ private:
             }
         };
         for_each_triangle(mesh, capped, vertices, triangles, window, add, add_cap);
-        if (sheets == nullptr)
-            return;
-        engine_.find_needed(*sheets, window.top);
-        for_each_triangle(
-            mesh, capped, vertices, triangles, window,
-            [&](size_t t) {
-                const int32_t* corner = mesh.triangles.data() + 3 * t;
-                const Vertex &a = vertices[corner[0]], &b = vertices[corner[1]], &c = vertices[corner[2]];
-                count_work(10);
-                if (is_upright(a, b, c))
-                    return;
-                NeededPieces needed(surface, sheets->needed[faces_down(a, b, c)], window);
-                if (fits_vectors(a, b, c) && fits_pieces(a, b, c, window.top, piece_limit_))
-                    engine_.add_needed_pieces(a, b, c, window, *sheets, surface);
-                else
-                    add_pieces(a, b, c, window, needed);
-            },
-            [](size_t) {});
     }
 
-    /// Marks all columns that a triangle may cover.
-    static void doubt_columns(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w,
-                              ColumnSheets& sheets) {
+    /// Adds volumes to sheets, or pieces in doubtful columns to the surface.
+    void add_to_sheets(bool halves, const MeshView& mesh, const std::vector<Vertex>& vertices,
+                       std::span<const BinnedTriangle> triangles, const Window& window, ColumnSheets& sheets,
+                       TileSurface& surface) const {
+        const auto add = [&](size_t t) {
+            const int32_t* corner = mesh.triangles.data() + 3 * t;
+            const Vertex &a = vertices[corner[0]], &b = vertices[corner[1]], &c = vertices[corner[2]];
+            count_work(10);
+            const bool sheet = faces_down(a, b, c);
+            if (!ColumnSheets::has_any(halves ? sheets.halved[sheet] : sheets.doubtful,
+                                       columns_near(a, b, c, window)) ||
+                is_upright(a, b, c))
+                return;
+            if (fits_vectors(a, b, c) && fits_pieces(a, b, c, window.top, piece_limit_)) {
+                (halves ? engine_.add_to_halved : engine_.add_to_doubtful)(a, b, c, window, sheets, surface);
+            } else {
+                SheetPieces receiver(sheets, sheet, halves, window, surface);
+                add_pieces(a, b, c, window, receiver);
+            }
+        };
+        for_each_triangle(mesh, nullptr, vertices, triangles, window, add, [](size_t) {});
+    }
+
+    /// The columns that a triangle may cover, from the tile's lowest one. One further at each side: a triangle in a
+    /// plane between voxels counts for those beside it.
+    static ColumnBox columns_near(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w) {
         const auto [low_x, high_x] = std::minmax({a.x, b.x, c.x});
         const auto [low_y, high_y] = std::minmax({a.y, b.y, c.y});
-        // One further at each side: a triangle in a plane between voxels counts for those beside it.
-        const int x0 = std::max(voxel_below(low_x), w.x0), x1 = std::min(voxel_floor(high_x), w.x1);
-        const int y0 = std::max(voxel_below(low_y), w.y0), y1 = std::min(voxel_floor(high_y), w.y1);
-        if (x0 <= x1 && y0 <= y1)
-            sheets.doubt(x0 - w.x0, x1 - w.x0, y0 - w.y0, y1 - w.y0);
+        return {std::max(voxel_below(low_x), w.x0) - w.x0, std::min(voxel_floor(high_x), w.x1) - w.x0,
+                std::max(voxel_below(low_y), w.y0) - w.y0, std::min(voxel_floor(high_y), w.y1) - w.y0};
     }
 
     /// Calls add(t) with the triangles of a tile, and add_cap(cap) with its caps.
