@@ -53,7 +53,7 @@ from voxrt.octree import Sphere
 from voxrt.octree.words import move_pointers
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "tests"))
-from fakes.board_host import Host, cameras_around, picture
+from fakes.board_host import Host, cameras_around, expected_crc, picture
 from fakes.simulated_port import SimulatedPort
 
 if TYPE_CHECKING:
@@ -166,6 +166,8 @@ def verify_scene(placed: Placed, file: str, scene: Scene, new: Scene | None, wor
             after = simulation.frames(placed.black + 2)[-1][0]
             equal = np.array_equal(after, picture(new, orbit(new)[9], SCALE))
             note("planet.glb, sent by the serial line, is the exact model's picture", holds=equal)
+            equal = host.frame_crc() == expected_crc(after, SCALE)
+            note("the CRC of this frame, read by the serial line, is the exact model's", holds=equal)
             equal = edits_are_shown(simulation, new, orbit(new)[9], placed.black)
             note("edits of it by the serial line are the exact model's pictures", holds=equal)
     return found

@@ -33,7 +33,8 @@ class ViewCheck:
     size
         Columns and rows.
     crc32
-        CRC-32 of the board's frame, its bytes red, green, blue by rows; None where the board sends no frames.
+        CRC-32 of the board's frame, as `frame_crc32` gives it. None where the board neither sends frames nor has a
+        register of it.
     expected_crc32
         That of the model.
     hits
@@ -53,6 +54,22 @@ class ViewCheck:
     def equal(self) -> bool:
         """The board and the model agree in all that the board tells."""
         return self.hits == self.expected_hits and self.crc32 in {None, self.expected_crc32}
+
+
+def frame_crc32(colour: NDArray[np.uint8]) -> int:
+    """Give the CRC-32 of a frame as the ray tracer streams it: green, blue, red per pixel, row by row.
+
+    Parameters
+    ----------
+    colour
+        Red, green, blue: uint8, shape (H, W, 3). W is a multiple of 4: rows are whole words.
+
+    Examples
+    --------
+    >>> f"{frame_crc32(np.zeros((2, 4, 3), dtype=np.uint8)):08X}"
+    'A3C1CA20'
+    """
+    return zlib.crc32(colour[..., (1, 2, 0)].tobytes())
 
 
 def cameras_around(depth: int, size: tuple[int, int], count: int) -> list[Camera]:
@@ -86,7 +103,7 @@ def check_views(
     progress
         Receives what is under way, and how many of how many steps are done.
     sends_frames
-        The frames of the device are the board's own. Otherwise its registers alone tell what it drew.
+        The frames of the device are the board's own. Otherwise its registers tell what it drew.
 
     Raises
     ------
@@ -103,13 +120,12 @@ def check_views(
         expected = model.render(
             scene.colours, _rows(refit(camera, size, drawn)), *drawn, brightness=np.array(FACES, dtype=np.uint8)
         )
-        colour = frame.colour if sends_frames else None
         found.append(
             ViewCheck(
                 number,
                 drawn,
-                None if colour is None else zlib.crc32(colour.tobytes()),
-                zlib.crc32(np.ascontiguousarray(expected.colour).tobytes()),
+                frame_crc32(frame.colour) if sends_frames else registers.get("board.frame_crc"),
+                frame_crc32(expected.colour),
                 registers["hits"],
                 int(np.count_nonzero(expected.material)),
             )

@@ -81,7 +81,7 @@ module board_bus
     if (address[1:0] != '0) return Nothing;
     if (address[23]) return Memory;
     if (address[22:11] == '0) return CoreRegisters;
-    if (address[22:6] == 17'h040) return address[5:2] <= 4'd11 ? BoardRegisters : Nothing;
+    if (address[22:6] == 17'h040) return address[5:2] inside {4'd12, 4'd13, 4'd15} ? Nothing : BoardRegisters;
     if (address[22:14] == 9'd1) return Table;
     return Nothing;
   endfunction

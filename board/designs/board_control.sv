@@ -36,6 +36,7 @@ module board_control
   input  logic                             flush_i,           // A frame that starts empties the core's caches.
   input  logic                             row_event_i,
   input  row_event_t                       row_i,
+  input  logic       [         31:0]       frame_crc_i,
   output logic                             drain_o,
   output logic                             new_frame_o,       // A frame starts; for one clock.
   output logic       [          1:0]       scale_o            // The scale of the new frame.
@@ -141,6 +142,7 @@ module board_control
     .data_i       (data_i[0]),
     .row_event_i,
     .row_i,
+    .frame_crc_i,
     .drain_o,
     .new_frame_o,
     .scale_o,

@@ -32,6 +32,7 @@ module board_frames
   // The line buffer.
   input  logic                          row_event_i,
   input  row_event_t                    row_i,
+  input  logic          [         31:0] frame_crc_i,       // Of the core's frame.
   output logic                          drain_o,           // No line is wanted until the next frame starts.
   output logic                          new_frame_o,       // A frame starts; for one clock.
   output logic          [          1:0] scale_o,
@@ -207,7 +208,7 @@ module board_frames
 
     unique case (register_i)
       4'd0:    register_data_o <= 32'h56584244;
-      4'd1:    register_data_o <= {14'd0, 2'(LineBits - 4), 16'h0100};
+      4'd1:    register_data_o <= {14'd0, 2'(LineBits - 4), 16'h0101};
       4'd2: begin
         register_data_o <= {
           16'd0, control_q.period, 2'd0, control_q.scale, control_q.steered, control_q.backward, control_q.turn,
@@ -222,6 +223,7 @@ module board_frames
       4'd8:    register_data_o <= requests_q;
       4'd9:    register_data_o <= bad_requests_q;
       4'd10:   register_data_o <= refused_q;
+      4'd14:   register_data_o <= frame_crc_i;
       default: register_data_o <= 32'(ClockHz);
     endcase
 

@@ -60,7 +60,7 @@ module board_system
   logic memory_en, memory_write;
   logic [31:0] memory_address, memory_data, memory_read;
   logic stream_valid, stream_ready, stream_user, stream_last;
-  logic [31:0] stream_data;
+  logic [31:0] stream_data, frame_crc;
   logic [3:0] unused_keep;
   axi_read_request_t [1:0] axi_request;
   axi_read_response_t [1:0] axi_response;
@@ -178,6 +178,7 @@ module board_system
     .flush_i         (flush),
     .row_event_i     (row_event),
     .row_i           (row),
+    .frame_crc_i     (frame_crc),
     .drain_o         (drain),
     .new_frame_o     (new_frame),
     .scale_o         (scale)
@@ -221,6 +222,15 @@ module board_system
     .table_word_o    (table_word),
     .table_data_o    (table_data),
     .table_data_i    (table_read)
+  );
+
+  board_frame_crc u_frame_crc (
+    .clk_i,
+    .rst_ni,
+    .valid_i(stream_valid && stream_ready),
+    .first_i(stream_user),
+    .word_i (stream_data),
+    .crc_o  (frame_crc)
   );
 
   // Memory and pixels.

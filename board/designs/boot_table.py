@@ -47,8 +47,8 @@ BOARD_REGISTERS = {
             "clock",
         )
     )
-}
-"""Addresses of the board's registers, by name."""
+} | {"frame_crc": 0x1038}
+"""Addresses of the board's registers, by name. Designs of version 1.0 have no `frame_crc`."""
 SDRAM_REGISTERS = {"page": 0x1030, "blocks": 0x1034}
 """Addresses of the registers that boards with SDRAM have besides, by name."""
 RUN, TURN, REVERSE, STEERED = 1, 2, 4, 8

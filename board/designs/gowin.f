@@ -17,6 +17,7 @@ gowin_serializer.sv
 board_crc32.sv
 board_uart.sv
 board_requests.sv
+board_frame_crc.sv
 board_control.sv
 board_beam.sv
 board_sdram.sv

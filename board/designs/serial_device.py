@@ -63,6 +63,8 @@ if TYPE_CHECKING:
 _BOARD = int.from_bytes(b"VXBD", "big")
 _CORE = int.from_bytes(b"VXRT", "big")
 _MAJOR = 1
+_FRAME_CRC_MINOR = 1
+"""The first minor version with the register `frame_crc`."""
 _WAIT_SECONDS = 5.0
 _LARGEST_SCALE = 2
 _SCALE_BITS = 0x30
@@ -115,6 +117,7 @@ class SerialDevice:
         if self._board("identity") != _BOARD or self._core("identity")["value"] != _CORE:
             raise DeviceError(f"{link.name}: this is no board of voxrt; load a bitstream of voxrt bitstream")
         version = self._board("version")
+        self._has_frame_crc = version & 0xFF >= _FRAME_CRC_MINOR
         if version >> 8 & 0xFF != _MAJOR:
             raise DeviceError(f"{link.name}: design version {version >> 8} is not supported; load a new bitstream")
         configuration = self._core("configuration")
@@ -153,7 +156,8 @@ class SerialDevice:
     def registers(self) -> Mapping[str, int]:
         """Read all registers, by name: the ray tracer's, then the board's."""
         core = {name: int(self._link.read(address, 1)[0]) for name, (address, _) in REGISTERS.items()}
-        return {**core, **{f"board.{name}": self._board(name) for name in BOARD_REGISTERS}}
+        names = [name for name in BOARD_REGISTERS if name != "frame_crc" or self._has_frame_crc]
+        return {**core, **{f"board.{name}": self._board(name) for name in names}}
 
     def hold(self) -> None:
         """Let no frame start until :meth:`frame` is called, and wait until the present one ends."""

@@ -12,7 +12,7 @@ from fakes.ecp5_board import Board
 from fakes.serial_terminal import terminal
 
 from voxrt.board.designs import serial_link
-from voxrt.board.designs.boot_table import RUN, TURN
+from voxrt.board.designs.boot_table import BOARD_REGISTERS, RUN, TURN
 from voxrt.board.designs.selftest import SELFTEST_REGISTERS
 from voxrt.board.registers import REGISTERS
 from voxrt.boards.board_scenes import load_scene
@@ -132,19 +132,26 @@ def test_a_report_compares_with_the_exact_model(report):
     assert len(found["views"]) == 3
     for view in found["views"]:
         assert view["equal"]
-        assert view["crc32"] is None
+        assert view["crc32"] == view["expected_crc32"]
         assert 0 < view["hits"] < view["size"][0] * view["size"][1]
     assert len({view["expected_crc32"] for view in found["views"]}) == 3
     assert found["registers"]["board.identity"] == int.from_bytes(b"VXBD", "big")
     assert board.played[-1] == 0  # its scene, as before
 
 
-def test_a_report_tells_a_difference(report):
+@pytest.mark.parametrize("wrong", [REGISTERS["hits"][0], BOARD_REGISTERS["frame_crc"]])
+def test_a_report_tells_a_difference(report, wrong):
     class Wrong(Board):
         def get(self, address):
-            return super().get(address) + (address == REGISTERS["hits"][0])
+            return super().get(address) ^ (address == wrong)
 
     assert "DIFFERS from the exact model; expected" in report(Wrong(), "--views", "1")
+
+
+def test_a_report_of_a_design_without_crcs_compares_hits(report):
+    found = json.loads(report(Board(has_crc=False), "--views", "2", "--json"))
+    assert [(view["equal"], view["crc32"]) for view in found["views"]] == [(True, None)] * 2
+    assert "board.frame_crc" not in found["registers"]
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fakes.board_host import Host, cameras_around, picture
+from fakes.board_host import Host, cameras_around, expected_crc, picture
 from fakes.simulated_port import SimulatedPort
 from oracles.verilator import needs_compiled_verilator
 
@@ -113,6 +113,7 @@ def test_a_scene_is_swapped_between_two_frames(program, scenes, tmp_path):
         assert np.array_equal(after, picture(new, camera, SCALE))
         assert host.register("play") >> 31 == 0
         assert host.register("refused") == 0
+        assert host.frame_crc() == expected_crc(after, SCALE)
 
 
 @pytest.mark.slow

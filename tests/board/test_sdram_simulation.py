@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fakes.board_host import Host, cameras_around, picture
+from fakes.board_host import Host, cameras_around, expected_crc, picture
 from fakes.simulated_port import SimulatedPort
 from oracles.verilator import needs_compiled_verilator
 
@@ -101,8 +101,9 @@ def test_whole_frames_from_power_on_and_after_an_upload(program, tmp_path):
         first = next(number for number, pixels in enumerate(last) if np.array_equal(pixels, expected))
         assert all(np.array_equal(pixels, expected) for pixels in last[first:])
         assert all(any(np.array_equal(pixels, each) for each in pictures) for pixels in last[:first])
-        assert host.register("underruns") == 0
-        assert host.register("refused") == 0
+        assert (host.register("underruns"), host.register("refused")) == (0, 0)
+
+        assert host.frame_crc() == expected_crc(expected, 1)
 
         # What is written over the present scene shows in the next frame: the caches forget it.
         place, empty = 1, [0xFFFFFF00] * 8  # the root's block

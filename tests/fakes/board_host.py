@@ -8,7 +8,9 @@ import zlib
 import numpy as np
 from fakes.box_scenes import picture_of
 
-from voxrt.board.designs.boot_table import BOARD_REGISTERS, CAMERAS
+from voxrt.board.board_report import frame_crc32
+from voxrt.board.designs.boot_table import BOARD_REGISTERS, CAMERAS, RUN
+from voxrt.board.registers import REGISTERS
 from voxrt.board.view import Lighting, View
 from voxrt.octree.camera import look_at
 
@@ -26,6 +28,11 @@ def cameras_around(scene, size, *, radius, height, steps=16):
     angles = 2 * np.pi * np.arange(CAMERAS) / steps
     eyes = np.stack([0.5 + radius * np.cos(angles), 0 * angles + 0.5 + height, 0.5 + radius * np.sin(angles)], axis=1)
     return [look_at(side * eye, np.full(3, side / 2), size=size) for eye in eyes]
+
+
+def expected_crc(seen, scale):
+    """The CRC of a frame that the screen shows, as the board must have it."""
+    return frame_crc32(seen[:: 1 << scale, :: 1 << scale])
 
 
 class Host:
@@ -68,3 +75,13 @@ class Host:
 
     def register(self, name):
         return self.read(BOARD_REGISTERS[name])[0]
+
+    def frame_crc(self):
+        """Let no frame start, read the CRC of the last one, and let frames start again."""
+        control = self.register("control")
+        self.write(BOARD_REGISTERS["control"], [control & ~RUN])
+        while self.read(REGISTERS["status"][0])[0] & 1:  # busy
+            self.board.run(10_000)
+        crc = self.register("frame_crc")
+        self.write(BOARD_REGISTERS["control"], [control])
+        return crc

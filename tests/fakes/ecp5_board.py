@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from voxrt.board.board_report import frame_crc32
+from voxrt.board.designs.boot_table import BOARD_REGISTERS
 from voxrt.board.register_writes import encode_fields
 from voxrt.board.registers import MATERIALS, REGISTERS
 from voxrt.sim.verilated import import_verilated
@@ -51,13 +53,15 @@ class BlindCore:
 class Board:
     """A serial port (`write`, `read`, `close`) with a board at it. Each request lets one vertical blanking pass."""
 
-    def __init__(self, faults: Iterable[str] = (), *, sdram: bool = False, core: Any = None) -> None:
-        self.sdram = sdram
+    def __init__(
+        self, faults: Iterable[str] = (), *, sdram: bool = False, has_crc: bool = True, core: Any = None
+    ) -> None:
+        self.sdram, self.has_crc = sdram, has_crc
         self.core = core or import_verilated("the tests need it").Core("tiny")
         self.words = 1 + (8 << (SDRAM_BLOCK_BITS if sdram else BLOCK_BITS))
         self.table = np.zeros(4096, dtype=np.uint32)
         self.registers = dict.fromkeys(range(0x1000, 0x1030, 4), 0)
-        self.registers |= {0x1000: 0x56584244, 0x1004: 0x0100, 0x102C: CLOCK}
+        self.registers |= {0x1000: 0x56584244, 0x1004: 0x0100 | has_crc, 0x102C: CLOCK}
         if sdram:
             self.registers |= {0x1030: 0, 0x1034: 1 << SDRAM_BLOCK_BITS}
         self.faults = iter(faults)
@@ -131,6 +135,8 @@ class Board:
     def get(self, address: int) -> int | None:
         if address in self.registers:
             return self.registers[address]
+        if address == BOARD_REGISTERS["frame_crc"] and self.has_crc:
+            return frame_crc32(self.screen()) if self.registers[0x1008] & 8 else 0
         if 0x4000 <= address < 0x8000:
             return int(self.table[(address - 0x4000) // 4])
         if address >= 0x800000:

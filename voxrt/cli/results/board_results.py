@@ -52,7 +52,7 @@ class ViewEntry(msgspec.Struct, frozen=True):
     size: tuple[int, int]
     equal: bool
     crc32: int | None
-    """Checksum of the board's frame; null where the board sends none, and its counters alone are compared."""
+    """Checksum of the board's frame; null where the design is too old to have it, and counters alone are compared."""
     expected_crc32: int
     hits: int
     expected_hits: int
