@@ -163,6 +163,8 @@ class SerialDevice:
         """Let no frame start until :meth:`frame` is called, and wait until the present one ends."""
         self._write_board("control", self._board("control") & ~RUN | STEERED)
         self._wait_until(lambda: not self._core("status")["busy"], "the present frame does not end")
+        # The line buffer takes the last words of the frame by the next blanking, in which a list is played.
+        self._play_next([])
 
     def write_memory(self, address: int, words: NDArray[np.uint32]) -> None:
         """Write words from word `address` on, at once: the frame in progress, if any, goes on."""

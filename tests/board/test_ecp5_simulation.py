@@ -11,9 +11,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fakes.board_host import Host, cameras_around, expected_crc, picture
+from fakes.box_scenes import ignore
 from fakes.simulated_port import SimulatedPort
 from oracles.verilator import needs_compiled_verilator
 
+from voxrt.board.board_report import cameras_around as report_cameras
+from voxrt.board.board_report import check_views
 from voxrt.board.designs import serial_device
 from voxrt.board.designs.boot_table import (
     BOARD_REGISTERS,
@@ -146,6 +149,25 @@ def test_edits_by_the_serial_line_show_between_two_frames(program, scenes, tmp_p
             changes += not np.array_equal(before, seen)
         assert changes >= 3
         assert Host(board).register("refused") == 0
+
+
+@pytest.mark.slow
+def test_a_report_compares_what_the_board_draws(program, scenes, tmp_path, monkeypatch):
+    monkeypatch.setattr(serial_device, "_WAIT_SECONDS", 600.0)  # a simulated frame takes a second and more
+    scene = scenes[0]
+    contents = contents_of(scene, cameras_of(scene, SIZE), control=RUN | TURN)
+    with BoardSimulation(program, tmp_path, contents) as board:
+        board.run(20_000)
+        device = SerialDevice(SerialLink("the simulation", SimulatedPort(board)), ModelDevice())
+        shown = device.loaded().scene
+        cameras = report_cameras(shown.depth, (160, 120), 2)
+        views = check_views(device, shown, cameras, (160, 120), ignore, sends_frames=False)
+        assert [view.equal for view in views] == [True, True]
+        assert views[0].crc32 == views[0].expected_crc32 != views[1].crc32
+        # Another scene than the board's.
+        words = scenes[1].words
+        views = check_views(device, replace(shown, words=words), cameras[:1], (160, 120), ignore, sends_frames=False)
+        assert views[0].crc32 != views[0].expected_crc32
 
 
 def test_noise_and_broken_requests_do_nothing(program, scenes, tmp_path):

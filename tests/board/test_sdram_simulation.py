@@ -102,7 +102,6 @@ def test_whole_frames_from_power_on_and_after_an_upload(program, tmp_path):
         assert all(np.array_equal(pixels, expected) for pixels in last[first:])
         assert all(any(np.array_equal(pixels, each) for each in pictures) for pixels in last[:first])
         assert (host.register("underruns"), host.register("refused")) == (0, 0)
-
         assert host.frame_crc() == expected_crc(expected, 1)
 
         # What is written over the present scene shows in the next frame: the caches forget it.

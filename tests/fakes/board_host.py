@@ -82,6 +82,7 @@ class Host:
         self.write(BOARD_REGISTERS["control"], [control & ~RUN])
         while self.read(REGISTERS["status"][0])[0] & 1:  # busy
             self.board.run(10_000)
+        self.board.frames(1)  # until the screen has taken all of it
         crc = self.register("frame_crc")
         self.write(BOARD_REGISTERS["control"], [control])
         return crc

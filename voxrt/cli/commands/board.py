@@ -117,7 +117,7 @@ def report_rows(result: ReportResult) -> list[tuple[str, str]]:
     ]
     for number, view in enumerate(result.views):
         verdict = "equal to the exact model" if view.equal else "DIFFERS from the exact model"
-        frame = "a design without CRCs" if view.crc32 is None else f"CRC-32 {view.crc32:08X}"
+        frame = "no CRC from this design" if view.crc32 is None else f"CRC-32 {view.crc32:08X}"
         expected = "" if view.equal else f"; expected {view.expected_hits:,}, {view.expected_crc32:08X}"
         columns, lines = view.size
         rows.append((f"view {number}", f"{columns}x{lines}, {view.hits:,} hits, {frame}: {verdict}{expected}"))
