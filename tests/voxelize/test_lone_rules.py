@@ -50,13 +50,21 @@ def steep_cone(rng):
     return Mesh(mesh.positions * (2.2, 1.4, 10) + rng.uniform(12, 14, 3), mesh.triangles, mesh.materials)
 
 
+def rough(rng):
+    """Above a plane, slopes in all directions: a voxel with a half may be far from where the centre line crosses."""
+    mesh = icosphere(3, (13, 13, 0), 8, 1)
+    x, y, z = mesh.positions.T
+    heights = np.where(z > 1e-6, 14 + rng.uniform(3, 9) * rng.random(len(z)) ** 2, 2.3)
+    return Mesh(np.stack([x, y, heights], axis=1), mesh.triangles, mesh.materials)
+
+
 def above_the_grid(rng):
     """What lies above the grid or below it is cut off."""
     mesh = icosphere(3, (13, 13, rng.choice([-1, SIDE])), 7, 1)
     return Mesh(mesh.positions + rng.uniform(0, 0.5, 3), mesh.triangles, mesh.materials)
 
 
-@pytest.mark.parametrize("shape", [bumpy, tilted_box, lattice_box, two_spheres, steep_cone, above_the_grid])
+@pytest.mark.parametrize("shape", [bumpy, tilted_box, lattice_box, two_spheres, steep_cone, rough, above_the_grid])
 @pytest.mark.parametrize("rule", ["centre", "half"])
 def test_a_part_has_the_same_voxels_alone_and_beside_another(shape, rule):
     for seed in range(12):
