@@ -8,7 +8,7 @@ import pytest
 from oracles.voxels import dense
 
 import voxrt
-from voxrt.voxelize import Grid, voxelize
+from voxrt.voxelize import Grid, volume_fractions, voxelize
 
 QUADS = {
     "x-": [0, 1, 3, 2],
@@ -54,14 +54,25 @@ def turned(part):
     return part[0], part[1][:, ::-1]
 
 
-def built(*parts):
-    """Voxels of the parts as one mesh with shared vertices, in a grid of 16 voxels per side, and kinds of warnings."""
+GRID = Grid(4, (0.0, 0.0, 0.0), 1.0)
+
+
+def scene_of(*parts):
+    """One mesh with shared vertices."""
     starts = np.cumsum([0, *(len(positions) for positions, _ in parts)])
     positions, number = np.unique(np.concatenate([part[0] for part in parts]), axis=0, return_inverse=True)
     triangles = np.concatenate([triangles + start for (_, triangles), start in zip(parts, starts, strict=False)])
-    scene = voxrt.mesh_scene(positions, number.reshape(-1)[triangles])
-    result = voxelize(scene, Grid(4, (0.0, 0.0, 0.0), 1.0))
+    return voxrt.mesh_scene(positions, number.reshape(-1)[triangles])
+
+
+def built(*parts):
+    """Voxels of the parts in a grid of 16 voxels per side, and kinds of warnings."""
+    result = voxelize(scene_of(*parts), GRID)
     return int((dense(result.voxels) != 0).sum()), {warning.kind: warning.count for warning in result.warnings}
+
+
+def volume_of(*parts):
+    return float(volume_fractions(scene_of(*parts), GRID).volumes[0])
 
 
 LOW, BESIDE, ABOVE = ([0, 0, 0], [8, 8, 8]), ([8, 8, 0], [16, 16, 8]), ([8, 8, 8], [14, 14, 14])
@@ -101,6 +112,53 @@ def test_cavities_that_touch_the_wall_at_a_vertex_stay():
     voxels, warned = built(box([0, 0, 0], [16, 16, 16]), (corners, inwards))
     assert (0 < 16**3 - voxels < np.linalg.det(corners[1:] - corners[0]) / -6, warned) == (True, {})
     assert built(box([0, 0, 0], [16, 16, 16]), turned(box([2, 2, 2], [14, 14, 14]))) == (16**3 - 12**3, {})
+
+
+TETRAHEDRON = np.array([[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]])
+
+
+@pytest.mark.parametrize(
+    "corners",
+    [
+        [[8, 0, 0], [2, 2, 2], [2, 8, 2], [2, 2, 8]],
+        [[4, 4, 8], [2, 2, 2], [8, 2, 2], [2, 8, 2]],
+        [[6, 0, 0], [10, 0, 0], [2, 8, 2], [2, 2, 8]],
+        [[4, 0, 4], [4, 4, 0], [2, 2, 2], [1, 3, 5]],
+    ],
+    ids=["corner on edge", "corner on face", "edge on edge", "corners on faces"],
+)
+def test_cavities_that_touch_edges_and_faces_stay(corners):
+    outer = np.array([[0, 0, 0], [16, 0, 0], [0, 16, 0], [0, 0, 16]], float), TETRAHEDRON
+    cavity = np.array(corners, float)
+    volume = np.linalg.det(cavity[1:] - cavity[0]) / 6
+    parts = outer, (cavity, TETRAHEDRON if volume < 0 else TETRAHEDRON[:, ::-1])
+    assert volume_of(*parts) == pytest.approx(16**3 / 6 - abs(volume), rel=1e-12)
+    assert built(*parts)[1] == {}
+
+
+def lathed(*rims):
+    """Rectangles at given heights, each joined to the next; the first is closed, the last is a line or a point."""
+    square = np.array([[0, 0], [0, 1], [1, 1], [1, 0]], float)
+    corners = [np.column_stack([low + square * np.subtract(high, low), np.full(4, z)]) for low, high, z in rims]
+    turns = [(4 * rim + i, 4 * rim + (i + 1) % 4) for rim in range(len(rims) - 1) for i in range(4)]
+    quads = [(0, 1, 2, 3), *((a, a + 4, b + 4, b) for a, b in turns)]
+    return np.concatenate(corners), np.array([[q[0], q[i], q[i + 1]] for q in quads for i in (1, 2)])
+
+
+BLOCK = ((0, 0), (16, 16), 0), ((0, 0), (16, 16), 16)
+
+
+def test_a_cavity_whose_ridge_crosses_the_ridge_of_a_dent_stays():
+    dented = lathed(*BLOCK, ((2, 4), (14, 12), 16), ((4, 8), (12, 8), 10))
+    cavity = lathed(((4, 4), (12, 12), 4), ((8, 5), (8, 11), 10))
+    assert volume_of(dented, turned(cavity)) == pytest.approx(volume_of(dented) - volume_of(cavity), rel=1e-12)
+
+
+def test_a_cavity_is_none_where_a_dent_passes_through_its_wall():
+    """The dent crosses the wall along edges that lie in the wall: no edge passes through a face."""
+    dented = lathed(*BLOCK, ((5, 5), (11, 11), 16), ((6, 7), (8, 9), 8), ((7, 8), (7, 8), 4))
+    block = box([3, 3, 2], [13, 13, 8])
+    assert built(dented, turned(block)) == (built(dented, block)[0], {"turned-pieces": 1})
 
 
 @pytest.mark.parametrize("seed", range(20))

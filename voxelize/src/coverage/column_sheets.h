@@ -13,7 +13,8 @@
 //
 // A sheet with two triangles in a column lies along the lower of their planes everywhere, or along the upper one. The
 // centre line shows which: it crosses the triangle whose plane is lower there, or the other triangle. In the first case
-// no voxel is in doubt whose centre is above the lower plane; in the second, none whose centre is below the upper plane.
+// no voxel is in doubt whose centre is above the lower plane; in the second, none whose centre is below the upper
+// plane.
 //
 // All that holds where the sheet passes each line of the column once. Edges where it turns back belong to both sheets,
 // or stand upright. So all of a column is doubtful where both sheets come near each other, where an upright triangle
@@ -21,8 +22,8 @@
 //
 // Elsewhere the part of a voxel that lies above the sheet grows from voxel to voxel upwards. So one crossing per sheet
 // decides the column by half: it moves to the first voxel of which at least half lies above the sheet. That is one of
-// the voxels in doubt, or the voxel above all of them. The part of a voxel is the difference of two volumes: those above
-// the sheet and below the voxel's top, and below its bottom. Each is a sum over the sheet's triangles.
+// the voxels in doubt, or the voxel above all of them. The part of a voxel is the difference of two volumes: those
+// above the sheet and below the voxel's top, and below its bottom. Each is a sum over the sheet's triangles.
 //
 // Where many voxels are in doubt, three near the centre line's crossing are taken. If the lowest of these has a half,
 // or the highest has none, the whole column is doubtful.

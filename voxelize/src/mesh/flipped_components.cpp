@@ -1,29 +1,18 @@
 #include "flipped_components.h"
 
 #include "../faces/closed_surface.h"
+#include "../faces/exact_predicates.h"
 #include "../work/disjoint_sets.h"
-#include "triangle_bvh.h"
-#include "triangle_contact.h"
+#include "enclosing_components.h"
 
 #include <bit>
-#include <optional>
 #include <unordered_set>
 
 namespace voxrt::voxelize {
 namespace {
 
 constexpr uint32_t kNoComponent = 0xFFFF'FFFF, kNoVertex = 0xFFFF'FFFF;
-constexpr size_t kFewComponents = 512; // up to so many are compared pair by pair
-constexpr double kCracks = 1e-5;       // the share of openings in the area of a surface that rounding leaves open
-constexpr size_t kBatch = 16;          // triangles per query
-
-struct Component {
-    std::vector<uint32_t> triangles, vertices;
-    TriangleBox box;
-    int128 volume6 = 0;
-    bool capped = false;
-    int orientation = 1; // -1: flipped
-};
+constexpr double kCracks = 1e-5; // the share of openings in the area of a surface that rounding leaves open
 
 /// A surface and what closes it, as connected components.
 class ClosedComponents {
@@ -59,7 +48,7 @@ public:
                 components_.emplace_back();
             }
             component_of_[t] = component;
-            Component& own = components_[component];
+            ClosedComponent& own = components_[component];
             own.capped = own.capped || !is_of_body(t);
             for (const uint32_t v : c) {
                 own.box.add(vertices_[v]);
@@ -75,7 +64,7 @@ public:
     /// Whether some component faces inwards and may be flipped, while others face outwards.
     bool are_mixed() const {
         bool in = false, out = false;
-        for (const Component& component : components_) {
+        for (const ClosedComponent& component : components_) {
             if (component.capped && component.volume6 < 0)
                 return false;
             in = in || component.volume6 < 0;
@@ -89,7 +78,7 @@ public:
         if (caps_ == nullptr || !caps_->shell_only.empty() || caps_->opening > kCracks)
             return false;
         bool in = false, out = false;
-        for (const Component& component : components_) {
+        for (const ClosedComponent& component : components_) {
             in = in || (component.capped && component.volume6 < 0);
             out = out || component.volume6 > 0;
         }
@@ -98,43 +87,28 @@ public:
 
     bool has_flat() const {
         return std::any_of(components_.begin(), components_.end(),
-                           [](const Component& component) { return component.volume6 == 0; });
+                           [](const ClosedComponent& component) { return component.volume6 == 0; });
     }
 
     /// Decides the orientation of all components.
     void orient() {
-        std::vector<std::pair<TriangleBox, uint32_t>> boxes;
-        for (uint32_t i = 0; i < components_.size(); ++i)
-            if (may_enclose(i))
-                for (const uint32_t t : components_[i].triangles)
-                    boxes.push_back({box_of(t), t});
-        const TriangleBvh bvh(std::move(boxes));
-        std::vector<uint32_t> order(components_.size());
-        for (uint32_t i = 0; i < order.size(); ++i)
-            order[i] = i;
+        std::vector<Corners> surface(count());
+        for (size_t t = 0; t < count(); ++t)
+            if (is_closed_part(t))
+                surface[t] = corners(t);
+        const EnclosingComponents enclosing(vertices_, std::move(surface), components_);
+        orientations_.assign(components_.size(), 1);
         // A component comes after those that may enclose it.
-        std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-            const Component &p = components_[a], &q = components_[b];
-            if (p.box.volume() != q.box.volume())
-                return p.box.volume() > q.box.volume();
-            const int128 u = p.volume6 < 0 ? -p.volume6 : p.volume6, v = q.volume6 < 0 ? -q.volume6 : q.volume6;
-            return u != v ? u > v : a < b;
-        });
-        rank_.resize(components_.size());
-        for (uint32_t i = 0; i < order.size(); ++i)
-            rank_[order[i]] = i;
-        for (const uint32_t index : order) {
-            Component& component = components_[index];
+        for (const uint32_t index : enclosing.order()) {
+            const ClosedComponent& component = components_[index];
             if (component.capped)
                 continue;
-            int number = 0;
-            uint32_t nearest = kNoComponent;
-            for (const Enclosing& enclosing : find_enclosing(index, bvh)) {
-                number += enclosing.winding * components_[enclosing.component].orientation;
-                if (nearest == kNoComponent || rank_[enclosing.component] > rank_[nearest])
-                    nearest = enclosing.component;
+            int number = 0, nearest = 0;                         // its orientation
+            for (const Enclosing& one : enclosing.find(index)) { // larger ones first
+                nearest = orientations_[one.component];
+                number += one.winding * nearest;
             }
-            component.orientation = number != 0 ? components_[nearest].orientation : component.volume6 < 0 ? -1 : 1;
+            orientations_[index] = number != 0 ? nearest : component.volume6 < 0 ? -1 : 1;
         }
     }
 
@@ -142,13 +116,13 @@ public:
     std::shared_ptr<const Orientation> flipped() const {
         auto found =
             orientation_ != nullptr ? std::make_shared<Orientation>(*orientation_) : std::make_shared<Orientation>();
-        for (const Component& component : components_)
-            found->components += component.orientation < 0;
+        for (const int orientation : orientations_)
+            found->components += orientation < 0;
         if (found->components == 0 || found->components == components_.size())
             return nullptr;
         found->faces.resize(mesh_.triangle_count());
         for (size_t t = 0; t < mesh_.triangle_count(); ++t)
-            if (is_closed_part(t) && components_[component_of_[t]].orientation < 0)
+            if (is_closed_part(t) && orientations_[component_of_[t]] < 0)
                 found->faces[t] ^= Orientation::kReversed;
         if (orientation_ != nullptr)
             flip_uncounted(*found);
@@ -195,9 +169,9 @@ private:
     /// Flips faces that do not count with the components on which they lie.
     void flip_uncounted(Orientation& orientation) const {
         std::unordered_set<uint64_t> flipped; // positions
-        for (const Component& component : components_)
-            if (component.orientation < 0)
-                for (const uint32_t v : component.vertices)
+        for (size_t i = 0; i < components_.size(); ++i)
+            if (orientations_[i] < 0)
+                for (const uint32_t v : components_[i].vertices)
                     flipped.insert(vertex_key(vertices_[v]));
         for (size_t t = 0; t < mesh_.triangle_count(); ++t)
             if (orientation.is_uncounted(t)) {
@@ -207,13 +181,6 @@ private:
                     orientation.faces[t] ^= Orientation::kReversed;
             }
     }
-
-    /// A component that lies around another, and its winding number there before flipping.
-    struct Enclosing {
-        uint32_t component;
-        int winding;
-        bool touched;
-    };
 
     size_t count() const { return mesh_.triangle_count() + (caps_ != nullptr ? caps_->triangles.size() : 0); }
     /// Whether a triangle belongs to what closes: not to an open component.
@@ -234,28 +201,6 @@ private:
         const Corners corners{uint32_t(c[0]), uint32_t(c[1]), uint32_t(c[2])};
         return orientation_ != nullptr ? orientation_->turned_corners(t, corners) : corners;
     }
-    /// False where the component's box contains no other component's box.
-    bool may_enclose(uint32_t own) const {
-        if (components_.size() > kFewComponents)
-            return true;
-        for (uint32_t i = 0; i < components_.size(); ++i)
-            if (i != own && components_[own].box.contains(components_[i].box))
-                return true;
-        return false;
-    }
-    Vertex middle_of(const Corners& c) const {
-        const auto middle = [&](int32_t Vertex::* axis) {
-            return int32_t((int64_t(vertices_[c[0]].*axis) + vertices_[c[1]].*axis + vertices_[c[2]].*axis) / 3);
-        };
-        return {middle(&Vertex::x), middle(&Vertex::y), middle(&Vertex::z)};
-    }
-    TriangleBox box_of(uint32_t t) const {
-        TriangleBox box;
-        for (const uint32_t v : corners(t))
-            box.add(vertices_[v]);
-        return box;
-    }
-
     /// Merges vertices at one position, where the surface does not close by its indices.
     void weld() {
         std::vector<uint64_t> sums(vertices_.size(), 0);
@@ -284,122 +229,6 @@ private:
         }
     }
 
-    /// The winding numbers of larger components at a place, by the triangles above it. Of those that it touches the
-    /// winding number is not known. `room`: 0 for a vertex, kNear for the middle of a triangle, which is rounded.
-    std::vector<Enclosing> winding_at(uint32_t own, const Vertex& q, int room, const TriangleBvh& bvh) const {
-        std::vector<Enclosing> found;
-        auto at = [&](uint32_t component) -> Enclosing& {
-            for (Enclosing& enclosing : found)
-                if (enclosing.component == component)
-                    return enclosing;
-            return found.emplace_back(Enclosing{component, 0, false});
-        };
-        const TriangleBox above{{q.x - room, q.y - room, q.z - room}, {q.x + room, q.y + room, INT32_MAX}};
-        bvh.find(above, [&](uint32_t t) {
-            const uint32_t component = component_of_[t];
-            if (component == kNoComponent || rank_[component] >= rank_[own])
-                return;
-            const Corners corner = corners(t);
-            const Vertex &a = vertices_[corner[0]], &b = vertices_[corner[1]], &c = vertices_[corner[2]];
-            const int height = sign_of(volume6_of(a, b, c, q));
-            if (room > 0 && is_near(a, b, c, q)) {
-                at(component).touched = true;
-                return;
-            }
-            if (height == 0) {
-                if (std::min({a.z, b.z, c.z}) <= q.z && is_on(a, b, c, q))
-                    at(component).touched = true;
-                return;
-            }
-            const int side = side_of(a, b, q);
-            if (side != 0 && side_of(b, c, q) == side && side_of(c, a, q) == side && height == side)
-                at(component).winding += side;
-        });
-        std::erase_if(found, [](const Enclosing& enclosing) { return !enclosing.touched && enclosing.winding == 0; });
-        return found;
-    }
-
-    std::vector<Enclosing> find_enclosing(uint32_t own, const TriangleBvh& bvh) const {
-        const Component& component = components_[own];
-        std::vector<Enclosing> enclosing;
-        const auto is_clear = [&] {
-            return std::none_of(enclosing.begin(), enclosing.end(), [](const Enclosing& one) { return one.touched; });
-        };
-        for (const uint32_t vertex : component.vertices) {
-            enclosing = winding_at(own, vertices_[vertex], 0, bvh);
-            if (is_clear())
-                break;
-        }
-        // All corners of a cavity may lie on other surface, where parts share edges.
-        for (size_t i = 0; i < component.triangles.size() && !is_clear(); ++i)
-            enclosing = winding_at(own, middle_of(corners(component.triangles[i])), kNear, bvh);
-        std::erase_if(enclosing, [](const Enclosing& one) { return one.touched; });
-        // A component whose surface is not near a triangle encloses all of it or none of it.
-        std::vector<uint32_t> near;
-        for (size_t from = 0; from < component.triangles.size() && !enclosing.empty(); from += kBatch) {
-            const size_t to = std::min(from + kBatch, component.triangles.size());
-            TriangleBox box;
-            for (size_t i = from; i < to; ++i)
-                box.add(box_of(component.triangles[i]));
-            near.clear();
-            bvh.find(box, [&](uint32_t t) {
-                if (std::any_of(enclosing.begin(), enclosing.end(),
-                                [&](const Enclosing& one) { return one.component == component_of_[t]; }))
-                    near.push_back(t);
-            });
-            for (size_t i = from; i < to && !near.empty(); ++i)
-                keep_enclosing(own, corners(component.triangles[i]), near, bvh, enclosing);
-        }
-        return enclosing;
-    }
-
-    /// Keeps the components that enclose a triangle as well.
-    void keep_enclosing(uint32_t own, const Corners& c, const std::vector<uint32_t>& near, const TriangleBvh& bvh,
-                        std::vector<Enclosing>& enclosing) const {
-        std::array<std::vector<Enclosing>, 3> at;
-        for (size_t i = 0; i < 3; ++i)
-            at[i] = winding_at(own, vertices_[c[i]], 0, bvh);
-        std::optional<std::vector<Enclosing>> at_middle;
-        std::erase_if(enclosing, [&](const Enclosing& one) {
-            size_t touched = 0;
-            for (const std::vector<Enclosing>& here : at) {
-                const auto other = std::find_if(here.begin(), here.end(), [&](const Enclosing& found) {
-                    return found.component == one.component && (found.touched || found.winding == one.winding);
-                });
-                if (other == here.end())
-                    return true;
-                touched += other->touched;
-            }
-            if (touched < 3)
-                return false;
-            // What lies on the surface around it is no wall of a cavity.
-            if (!at_middle)
-                at_middle = winding_at(own, middle_of(c), kNear, bvh);
-            return std::none_of(at_middle->begin(), at_middle->end(), [&](const Enclosing& found) {
-                return found.component == one.component && !found.touched && found.winding == one.winding;
-            });
-        });
-        TriangleBox box;
-        for (const uint32_t v : c)
-            box.add(vertices_[v]);
-        for (const uint32_t t : near)
-            if (box.overlaps(box_of(t)))
-                std::erase_if(enclosing, [&](const Enclosing& one) {
-                    return one.component == component_of_[t] && cross(c, corners(t));
-                });
-    }
-
-    bool cross(const Corners& c, const Corners& d) const {
-        auto at = [this](uint32_t v) -> const Vertex& { return vertices_[v]; };
-        for (int i = 0; i < 3; ++i) {
-            const int j = (i + 1) % 3;
-            if (passes(at(c[i]), at(c[j]), at(d[0]), at(d[1]), at(d[2])) ||
-                passes(at(d[i]), at(d[j]), at(c[0]), at(c[1]), at(c[2])))
-                return true;
-        }
-        return false;
-    }
-
     const MeshView& mesh_;
     const std::vector<Vertex>& vertices_;
     const Orientation* orientation_;
@@ -407,9 +236,9 @@ private:
     const Bodies* bodies_; // null where the surface is a manifold
     DisjointSets sets_;    // of vertices; of triangles where there are bodies
     bool is_one_;
-    std::vector<uint32_t> component_of_; // by triangle
-    std::vector<Component> components_;  // by first triangle
-    std::vector<uint32_t> rank_;         // by component: larger ones first
+    std::vector<uint32_t> component_of_;      // by triangle
+    std::vector<ClosedComponent> components_; // by first triangle
+    std::vector<int> orientations_;           // by component; -1: flipped
 };
 
 } // namespace

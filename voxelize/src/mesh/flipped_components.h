@@ -3,8 +3,7 @@
 // The winding number inside a component whose normals point inwards is -1: where it overlaps another component the two
 // would cancel. So each connected closed component is made to face outwards, by the sign of its volume. But a component
 // that lies inside others may be the wall of a cavity: it keeps its orientation relative to the smallest component
-// around it, and is flipped where that one is. A component lies inside another where none of its vertices is outside
-// and the two surfaces do not cross; they may touch. All of that is decided exactly, in integers.
+// around it, and is flipped where that one is: see enclosing_components.h.
 //
 // Cost: the triangles, about 10 ns each, where there is one component or all face one way; else also queries of a
 // bounding volume hierarchy.
