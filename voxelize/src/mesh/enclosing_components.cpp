@@ -2,6 +2,8 @@
 
 #include "triangle_contact.h"
 
+#include <iterator>
+
 namespace voxrt::voxelize {
 namespace {
 
@@ -59,19 +61,25 @@ std::vector<Enclosing> EnclosingComponents::find(uint32_t own) const {
         enclosing = winding_at(own, middle_of(component.triangles[i]), kNear);
     std::erase_if(enclosing, [](const Enclosing& one) { return one.touched; });
     // A component whose surface is not near a triangle encloses all of it or none of it.
-    std::vector<uint32_t> near;
+    std::vector<uint32_t> near_batch, near;
     for (size_t from = 0; from < component.triangles.size() && !enclosing.empty(); from += kBatch) {
         const size_t to = std::min(from + kBatch, component.triangles.size());
         TriangleBox box;
         for (size_t i = from; i < to; ++i)
             box.add(box_of(component.triangles[i]));
-        near.clear();
+        near_batch.clear();
         bvh_->find(box, [&](uint32_t t) {
             if (find_component(enclosing, component_of_[t]) != nullptr)
-                near.push_back(t);
+                near_batch.push_back(t);
         });
-        for (size_t i = from; i < to && !near.empty(); ++i)
-            keep_enclosing(own, component.triangles[i], near, enclosing);
+        for (size_t i = from; i < to && !near_batch.empty(); ++i) {
+            const TriangleBox own_box = box_of(component.triangles[i]);
+            near.clear();
+            std::copy_if(near_batch.begin(), near_batch.end(), std::back_inserter(near),
+                         [&](uint32_t t) { return own_box.overlaps(box_of(t)); });
+            if (!near.empty())
+                keep_enclosing(own, component.triangles[i], near, enclosing);
+        }
     }
     std::sort(enclosing.begin(), enclosing.end(),
               [&](const Enclosing& a, const Enclosing& b) { return rank_[a.component] < rank_[b.component]; });
@@ -166,14 +174,13 @@ void EnclosingComponents::keep_enclosing(uint32_t own, uint32_t t, const std::ve
 
 /// Whether a component's surface meets the interior of a triangle from both sides, or lies along it.
 bool EnclosingComponents::crosses(uint32_t component, uint32_t t, const std::vector<uint32_t>& near) const {
-    const TriangleBox box = box_of(t);
     const auto vertices_of = [&](uint32_t triangle) {
         const Corners& c = corners_[triangle];
         return Triangle{vertices_[c[0]], vertices_[c[1]], vertices_[c[2]]};
     };
     Sides sides;
     for (const uint32_t other : near)
-        if (component_of_[other] == component && box.overlaps(box_of(other)))
+        if (component_of_[other] == component)
             sides.add(sides_of_contact(vertices_of(t), vertices_of(other)));
     return sides.above && sides.below;
 }
