@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
+
+from pxr import Sdf
 
 from voxrt.voxelize.formats.usd.stage_scene import read_stage
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from voxrt.voxelize import Scene
 
 
@@ -21,4 +22,8 @@ class Unlimited:
 
 def load_usd(path: Path, **options: object) -> Scene:
     """Read a stage as the process does that reads it for users."""
+    # USD keeps the layers that a caught error holds. A later test may have written other content at the same path.
+    Sdf.Layer.ReloadLayers(
+        [layer for layer in Sdf.Layer.GetLoadedLayers() if layer.realPath and Path(layer.realPath).is_file()]
+    )
     return read_stage(path, Unlimited(), **options)
