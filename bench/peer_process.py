@@ -10,6 +10,8 @@ import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from report import USER_ENVIRONMENT
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
@@ -37,7 +39,7 @@ def run_confined(command: Sequence[str | Path], seconds: float, memory: int) -> 
 
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         start = time.perf_counter()
-        process = subprocess.Popen(command, stdout=out, stderr=err, preexec_fn=confine)  # noqa: PLW1509 - no threads
+        process = subprocess.Popen(command, stdout=out, stderr=err, env=USER_ENVIRONMENT, preexec_fn=confine)  # noqa: PLW1509 - no threads
         while (ended := os.wait4(process.pid, os.WNOHANG))[0] == 0:
             if time.perf_counter() - start > seconds:
                 process.kill()

@@ -15,6 +15,10 @@ ROOT = Path(__file__).resolve().parents[1]
 ASSETS = Path(os.environ.get("VOXRT_ASSETS", ROOT.parent / "shared" / "assets"))
 RESULTS = ROOT / "bench" / "results"
 
+USER_ENVIRONMENT = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+"""Of processes whose start is measured. Users' installs have compiled modules: where Python may not write them, each
+process would compile all of them."""
+
 
 def options_of(documentation: str | None) -> argparse.ArgumentParser:
     """Return a parser with ``--write``, described by the first line of a script's documentation."""

@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import trimesh
-from report import options_of, write_page
+from report import USER_ENVIRONMENT, options_of, write_page
 
 import voxrt
 from voxelize import displaced_sphere
@@ -75,8 +75,7 @@ def steps(ply: Path, runs: int) -> list[str]:
 def run(command: tuple[str, ...], folder: Path) -> tuple[float, float, str]:
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     start = time.perf_counter()
-    environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True, env=environment)
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True, env=USER_ENVIRONMENT)
     wall = time.perf_counter() - start
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return wall, after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime, done.stdout
