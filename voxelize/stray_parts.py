@@ -24,8 +24,8 @@ voxels. Of a few triangles a stray one may be a larger share."""
 
 _BINS = 64
 
-_ENOUGH = 100_000
-"""Triangles that tell whether a scene is wide, as nearly all are."""
+_ENOUGH = 1 << 15
+"""Triangles that tell whether a scene is wide, as nearly all are: a share of 1 % has an error of 0.05 %."""
 
 _CHUNK = 1 << 18
 
