@@ -6,6 +6,7 @@
 #include "../vectors/instruction_sets.h"
 #include "block_areas.h"
 #include "gathered_tiles.h"
+#include "gathered_volumes.h"
 #include "tile_worker.h"
 
 #include <optional>
@@ -374,36 +375,9 @@ ObjectVolumes BlockVoxelizer::volumes() {
     }
     std::vector<ObjectTally> tallies(s.objects);
     std::vector<TileResult> tiles = s.results(s.occupied({0, 0, s.side}), tallies, true);
-    std::vector<size_t> ends(s.objects + 1); // of the object before, then of each
-    for (const TileResult& tile : tiles)
-        for (const VolumeBrick& brick : tile.volumes.bricks)
-            ends[brick.object + 1] += out.known[brick.object] ? size_t(count(brick.voxels)) : 0;
-    for (size_t object = 0; object < s.objects; ++object) {
-        out.whole.push_back(tallies[object].voxels - int64_t(ends[object + 1]));
-        ends[object + 1] += ends[object];
-    }
-    out.objects.resize(ends.back());
-    out.voxels.resize(ends.back());
-    out.volumes.resize(ends.back());
-    for (TileResult& tile : tiles) {
-        const double* value = tile.volumes.values.data();
-        for (const VolumeBrick& brick : tile.volumes.bricks) {
-            const auto corner = [&brick](int axis) { return int32_t(gather_bits(brick.code >> axis)) * kBrickSide; };
-            const std::array<int32_t, 3> at{corner(0), corner(1), corner(2)};
-            size_t to = ends[brick.object];
-            for (int z = 0; z < kBrickSide; ++z)
-                for (uint64_t left = brick.voxels[size_t(z)]; left != 0; left &= left - 1, ++value) {
-                    if (!out.known[brick.object])
-                        continue;
-                    const int bit = std::countr_zero(left);
-                    out.objects[to] = brick.object;
-                    out.voxels[to] = {at[0] + column_x(bit), at[1] + column_y(bit), at[2] + z};
-                    out.volumes[to++] = *value;
-                }
-            ends[brick.object] = to;
-        }
-        tile.volumes = {};
-    }
+    const std::vector<size_t> counts = gather_volumes(tiles, out, s.workers);
+    for (size_t object = 0; object < s.objects; ++object)
+        out.whole.push_back(tallies[object].voxels - int64_t(counts[object]));
     return out;
 }
 
