@@ -117,25 +117,26 @@ Mesh sphere(double x, double y, double z, double radius, int rings, int hole, bo
     return mesh;
 }
 
-uint64_t fingerprint(const SparseVoxels& voxels) {
+/// A hash of the bytes of arrays.
+template <typename... Arrays> uint64_t fingerprint_of(const Arrays&... arrays) {
     uint64_t hash = 0xCBF2'9CE4'8422'2325; // FNV-1a
-    auto add = [&hash](const auto& array) {
+    const auto add = [&hash](const auto& array) {
         const auto* bytes = reinterpret_cast<const unsigned char*>(array.data());
         for (size_t i = 0; i < array.size() * sizeof(array[0]); ++i)
             hash = (hash ^ bytes[i]) * 0x100'0000'01B3;
     };
-    add(voxels.brick_codes);
-    add(voxels.brick_masks);
-    add(voxels.brick_materials);
-    add(voxels.brick_rows);
-    add(voxels.cells);
-    add(voxels.octant_codes);
-    add(voxels.octant_levels);
-    add(voxels.octant_materials);
-    add(voxels.object_voxels);
-    add(voxels.object_modes);
-    add(voxels.object_notes);
+    (add(arrays), ...);
     return hash;
+}
+
+uint64_t fingerprint(const SparseVoxels& voxels) {
+    return fingerprint_of(voxels.brick_codes, voxels.brick_masks, voxels.brick_materials, voxels.brick_rows,
+                          voxels.cells, voxels.octant_codes, voxels.octant_levels, voxels.octant_materials,
+                          voxels.object_voxels, voxels.object_modes, voxels.object_notes);
+}
+
+uint64_t fingerprint(const ObjectVolumes& found) {
+    return fingerprint_of(found.objects, found.voxels, found.volumes, found.whole, found.known);
 }
 
 /// The first thread's scene: parts over some meshes, in voxels.
@@ -194,6 +195,16 @@ bool agree(const Scene& scene, int depth) {
                 }
         }
     return true;
+}
+
+bool volumes_agree(const Scene& scene, int depth) {
+    const Parts held(scene);
+    const auto volumes = [&](int threads) { return find_volumes(depth, held.get(), held.get().size(), threads); };
+    const ObjectVolumes alone = volumes(1);
+    if (!alone.volumes.empty() && fingerprint(alone) == fingerprint(volumes(3)))
+        return true;
+    std::printf("depth %d: three threads find other volumes, or one finds none\n", depth);
+    return false;
 }
 
 struct Stopped {};
@@ -271,6 +282,7 @@ int main() {
         scene.add(PartKind::ellipsoid, 0,
                   {side / 3, 1, 0, side / 2, 0, side / 5, 0, side / 2, 1, 0, side / 4, side / 2});
         good = agree(scene, depth) && good;
+        good = volumes_agree(scene, depth) && good;
 
         std::vector<Vertex> points;
         std::uniform_int_distribution<int32_t> coordinate(0, depth);
@@ -278,6 +290,12 @@ int main() {
             points.push_back({coordinate(random) * 4096, coordinate(random) * 4096, coordinate(random) * 4096});
         good = convex_hull(points).size() >= 12 && good;
     }
+
+    Scene large; // of many tiles
+    large.meshes = {sphere(64, 64, 64, 50, 12, 0, false), sphere(64, 64, 64, 50, 12, 7, false)};
+    for (int i = 0; i < 4; ++i)
+        large.add(i % 2, 1, 5 * i);
+    good = volumes_agree(large, 7) && good;
 
     Scene closed, holed; // the work is in coverage and components; in boundaries and holes
     closed.meshes = {sphere(16, 16, 16, 12, 110, 0, false)};
