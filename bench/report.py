@@ -16,8 +16,8 @@ ASSETS = Path(os.environ.get("VOXRT_ASSETS", ROOT.parent / "shared" / "assets"))
 RESULTS = ROOT / "bench" / "results"
 
 USER_ENVIRONMENT = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
-"""Of processes whose start is measured. Users' installs have compiled modules: where Python may not write them, each
-process would compile all of them."""
+"""The variables of processes whose start is measured. Users' installs have compiled modules; where Python may not write
+them, each process would compile all of them."""
 
 
 def options_of(documentation: str | None) -> argparse.ArgumentParser:
