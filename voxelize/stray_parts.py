@@ -24,8 +24,14 @@ voxels. Of a few triangles a stray one may be a larger share."""
 
 _BINS = 64
 
-_ENOUGH = 1 << 15
-"""Triangles that tell whether a scene is wide, as nearly all are: a share of 1 % has an error of 0.05 %."""
+_ENOUGH = 100_000
+"""Triangles that tell whether a scene is wide."""
+
+_FEW = 1 << 14
+"""Triangles that are looked at first. They suffice to show that most scenes are wide."""
+
+_LEAST = 0.3
+"""The share of their area that must lie close together; otherwise the scene is wide."""
 
 _CHUNK = 1 << 18
 
@@ -65,12 +71,12 @@ def find_stray_parts(scene: Scene, geometry: Geometry) -> StrayParts | None:
     if any(proxies(item, geometry) is not None for item in shown):
         return None
     groups = _groups(shown)
-    count = sum(one.count for one in groups)
-    if count < 2:
+    if sum(one.count for one in groups) < 2:
         return None
-    step = max(1, count // _ENOUGH)
     width = _width(groups)
-    corners = np.concatenate([one.corners(one.some(step)) for one in groups], axis=2)
+    if _is_wide(_some_corners(groups, _FEW), width):
+        return None
+    corners = _some_corners(groups, _ENOUGH)
     for share, narrow in _BULKS:
         ends = _bulk_ends(corners, width, share, narrow)
         if ends is not None and (ends[1] - ends[0]).max() < width * narrow:
@@ -144,6 +150,12 @@ def _groups(shown: list[SceneObject]) -> list[_Group]:
     ]
 
 
+def _some_corners(groups: list[_Group], number: int) -> NDArray[np.float64]:
+    """Return the corners of at least so many triangles, or of all."""
+    step = max(1, sum(one.count for one in groups) // number)
+    return np.concatenate([one.corners(one.some(step)) for one in groups], axis=2)
+
+
 def _width(groups: list[_Group]) -> float:
     """Return the longest side of a box that holds all vertices."""
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
@@ -162,6 +174,18 @@ def _areas(corners: NDArray[np.float64]) -> NDArray[np.float64]:
         return np.asarray(np.sqrt(sum(squares)) / 2)
 
 
+def _is_wide(corners: NDArray[np.float64], width: float) -> bool:
+    """Tell whether a few triangles suffice to see that the surface has no narrow bulk on some axis.
+
+    A large triangle among them counts for many, so that far less than the share of a bulk must lie together.
+    """
+    area = _areas(corners)
+    widest = max(narrow for _, narrow in _BULKS)
+    return bool(0 < area.sum() < np.inf) and not all(
+        _may_be_narrow(axis, area, width, widest, _LEAST) for axis in corners.mean(axis=0)
+    )
+
+
 def _bulk_ends(
     corners: NDArray[np.float64], width: float, share: float, narrow: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
@@ -173,7 +197,8 @@ def _bulk_ends(
     if not 0 < area.sum() < np.inf:
         return None
     middles = corners.mean(axis=0)
-    if not all(_may_be_narrow(axis, area, width, share, narrow) for axis in middles):
+    # The share of the surface between the quantiles of both ends is larger than this, whatever is rounded.
+    if not all(_may_be_narrow(axis, area, width, narrow, 2 * share - 1.001) for axis in middles):
         return None
     order = np.argsort(middles, axis=1, kind="stable")
     sums = np.cumsum(area[order], axis=1) / area.sum()
@@ -186,14 +211,14 @@ def _bulk_ends(
 
 
 def _may_be_narrow(
-    middles: NDArray[np.float64], area: NDArray[np.float64], width: float, share: float, narrow: float
+    middles: NDArray[np.float64], area: NDArray[np.float64], width: float, narrow: float, least: float
 ) -> bool:
     """Tell whether _bulk_ends may find a narrow bulk on this axis: without its room, half as wide as is narrow.
 
-    The area is added up in bins, of which such a bulk meets few. This is faster than sorting. The share of the surface
-    between the quantiles of both ends is larger than the least, whatever is rounded.
+    The area is added up in bins, of which such a bulk meets few. At least the share `least` must lie in so many bins
+    beside each other. This is faster than sorting.
     """
-    most, least = math.ceil(_BINS * narrow / 2) + 1, 2 * share - 1.001
+    most = math.ceil(_BINS * narrow / 2) + 1
     bins = ((middles - middles.min()) * (_BINS / width)).astype(np.int64)
     sums = np.append(0.0, np.cumsum(np.bincount(bins, area, _BINS + most)))
     return bool((sums[most:] - sums[:-most]).max() >= least * sums[-1])

@@ -52,6 +52,19 @@ def test_copies_are_looked_at_where_they_stand(subdivisions):
     assert find_stray_parts(scene_with(near, SceneObject("beside", ball, moved(200, 0, 0))), "auto") is None
 
 
+@pytest.mark.parametrize("number", range(10))
+def test_a_triangle_of_almost_a_hundredth_is_found_wherever_it_stands_in_a_mesh(number):
+    """A look at every fifth triangle, say, must not count it five times."""
+    ball = icosphere(6, (0, 0, 0), 8)
+    chip = Mesh([[400, 0, 0], [403.8, 0, 0], [400, 3.8, 0]], [[0, 1, 2]], [1])
+    scan = joined(ball, chip)
+    scan = replace(scan, triangles=np.roll(scan.triangles, number + 1, axis=0))
+    found = find_stray_parts(scene_with(SceneObject("scan", scan)), "auto")
+    assert found is not None
+    assert found.place[0] == 403.8
+    assert 0.99 < found.share < 0.992
+
+
 def test_what_is_wide_or_hidden_or_a_tenth_of_the_surface_is_no_stray():
     ground = SceneObject("ground", box_mesh((-500, -1, -500), (500, 0, 500)))
     assert find_stray_parts(scene_with(ground, SceneObject("body", BOX)), "auto") is None
