@@ -2,6 +2,7 @@
 
 import asyncio
 import inspect
+import itertools
 import os
 import signal
 import sysconfig
@@ -33,3 +34,18 @@ def pytest_pyfunc_call(pyfuncitem):
     arguments = {name: pyfuncitem.funcargs[name] for name in inspect.signature(pyfuncitem.obj).parameters}
     asyncio.run(asyncio.wait_for(pyfuncitem.obj(**arguments), 120))
     return True
+
+
+_folder_numbers = itertools.count()
+
+
+@pytest.fixture
+def tmp_path(tmp_path):
+    """Give each test a folder whose name no other test of this process has had.
+
+    Folders of passed tests are removed, and pytest uses their names again. USD keeps layers by their paths, and it
+    frees them in threads of its own.
+    """
+    folder = tmp_path / str(next(_folder_numbers))
+    folder.mkdir()
+    return folder
