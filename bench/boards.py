@@ -17,12 +17,12 @@ import sys
 import tempfile
 import time
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 from unittest.mock import patch
 
 import numpy as np
+from msgspec.structs import replace
 
 from voxrt.board.designs import build, serial_device
 from voxrt.board.designs.base_design import Slice, patch_config

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import sys
 import time
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from msgspec.structs import replace
 from report import ASSETS, ROOT, options_of, publish, table
 
 import voxrt

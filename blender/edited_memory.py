@@ -7,10 +7,10 @@ when its author rests.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec.structs import replace
 
 import voxrt
 from voxrt.octree import Octree, Piece, World, build

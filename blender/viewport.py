@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import bpy
 import numpy as np
+from msgspec.structs import replace
 
 import voxrt
 from voxrt.views.viewpoint import authored_camera

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import zlib
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.board.view import FACES, View, refit
 from voxrt.octree.camera import look_at
@@ -22,8 +22,7 @@ if TYPE_CHECKING:
     from voxrt.octree.camera import Camera
 
 
-@dataclass(frozen=True, slots=True)
-class ViewCheck:
+class ViewCheck(Struct, frozen=True):
     """A view of a scene, as the board has it and as the exact model has it.
 
     Attributes

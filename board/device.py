@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
+
+from msgspec import Struct
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -18,8 +19,7 @@ if TYPE_CHECKING:
     from voxrt.octree import Patch
 
 
-@dataclass(frozen=True, slots=True)
-class Identity:
+class Identity(Struct, frozen=True):
     """What a device is and what it can hold.
 
     Attributes
@@ -60,8 +60,7 @@ class Identity:
         return 1 + self.pixel_seconds * size[0] * size[1]
 
 
-@dataclass(frozen=True, slots=True)
-class Counters:
+class Counters(Struct, frozen=True):
     """The cost of a frame: rays, octree words read and clock cycles (None where not counted), wall seconds."""
 
     rays: int
@@ -70,8 +69,7 @@ class Counters:
     seconds: float
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Frame:
+class Frame(Struct, frozen=True, eq=False):
     """A complete frame: uint8, shape (H, W, 3), sRGB, row 0 at the top, C-contiguous; and its cost."""
 
     colour: NDArray[np.uint8]

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
+from msgspec.structs import replace
 
 from voxrt.board.errors import Refused
 from voxrt.board.scene import Scene, check_memory
@@ -21,8 +22,7 @@ _FIRST_WORDS = 4096
 """Words of an octree that are read at first; most of a small one."""
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class LoadedScene:
+class LoadedScene(Struct, frozen=True, eq=False):
     """A scene in the memory of a device.
 
     Attributes

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import zlib
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from msgspec import Struct
 
 from voxrt.board.errors import Refused
 from voxrt.octree import RomError, check_roots, decode
@@ -21,8 +22,7 @@ MEMORY_SUFFIXES = (".blob", ".mem")
 """Suffixes of the files of an octree memory that a device takes."""
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Scene:
+class Scene(Struct, frozen=True, eq=False):
     """An octree memory with its materials, first camera and first lighting.
 
     Attributes

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import zlib
-from dataclasses import replace
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
+from msgspec.structs import replace
 
 from voxrt.board.edited_scene import rom_of, same_materials, with_numbers
 from voxrt.board.errors import DeviceError, Refused

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 from voxrt.octree.camera import (
     FACES,
@@ -20,8 +20,7 @@ from voxrt.octree.camera import (
 __all__ = ["FACES", "FEATURES", "Camera", "Faces", "Lighting", "Shading", "Triple", "View", "frame_world", "refit"]
 
 
-@dataclass(frozen=True, slots=True)
-class View:
+class View(Struct, frozen=True):
     """A frame that a device is asked for.
 
     Attributes

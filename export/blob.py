@@ -10,11 +10,12 @@ from __future__ import annotations
 import math
 import struct
 import zlib
-from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import msgspec
 import numpy as np
+from msgspec import Struct, field
+from msgspec.structs import replace
 
 from voxrt.export.atomic import write_atomically
 from voxrt.export.provenance import Provenance
@@ -44,8 +45,7 @@ _MIRROR, _AUTHORED = 1, 2
 _LIGHT_ON, _FLAT, _BY_ANGLE = 1, 2, 4
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Blob:
+class Blob(Struct, frozen=True, eq=False):
     """What a blob holds: a memory, and how it is to be seen.
 
     Attributes

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import errno
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
 
 from voxrt.export.atomic import new_folder
 from voxrt.export.blob import Blob, read_blob, write_blob

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
+
+from msgspec import Struct
 
 from voxrt.octree import BOARDS, census, shared_words, solid_bounds
 
@@ -13,8 +14,7 @@ if TYPE_CHECKING:
 Corner: TypeAlias = tuple[int, int, int]
 
 
-@dataclass(frozen=True, slots=True)
-class LevelInfo:
+class LevelInfo(Struct, frozen=True):
     """How many leaves of 2**level voxels per side are solid, and how many are empty."""
 
     level: int
@@ -22,8 +22,7 @@ class LevelInfo:
     empty: int
 
 
-@dataclass(frozen=True, slots=True)
-class MaterialInfo:
+class MaterialInfo(Struct, frozen=True):
     """A material and the voxels that have it."""
 
     id: int
@@ -32,8 +31,7 @@ class MaterialInfo:
     voxels: int
 
 
-@dataclass(frozen=True, slots=True)
-class BoardInfo:
+class BoardInfo(Struct, frozen=True):
     """A board, the words that its octree memory holds, and whether these fit."""
 
     name: str
@@ -41,8 +39,7 @@ class BoardInfo:
     fits: bool
 
 
-@dataclass(frozen=True, slots=True)
-class RomInfo:
+class RomInfo(Struct, frozen=True):
     """The facts of a memory, as :func:`rom_info` returns them.
 
     Attributes

@@ -9,9 +9,10 @@ exchanged alone is noticed.
 from __future__ import annotations
 
 import errno
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from msgspec import Struct
 
 from voxrt.export.atomic import new_folder, staged_files, write_together
 from voxrt.export.blob import Blob
@@ -38,8 +39,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize import ObjectReport
 
 
-@dataclass(frozen=True, slots=True)
-class RomFiles:
+class RomFiles(Struct, frozen=True):
     """Where a ROM was written: its words (a ``.mem``, most often) and its manifest."""
 
     mem: Path

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import mmap
 import os
-from dataclasses import dataclass
 from importlib import import_module
 from stat import S_ISDIR, S_ISREG
 from typing import TYPE_CHECKING
+
+from msgspec import Struct
 
 from voxrt.octree import RomError, _native
 
@@ -33,8 +34,7 @@ _MAPPED = 1 << 24
 """Bytes from which a file is mapped: copies of smaller ones cost nothing, and cannot change."""
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class WordFile:
+class WordFile(Struct, frozen=True, eq=False):
     """What a file of words holds.
 
     Attributes

@@ -7,10 +7,11 @@ the roots of the frames. Word 0 is the root of the first frame: who knows nothin
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
+from msgspec.structs import force_setattr
 
 from voxrt.octree import _native
 from voxrt.octree.errors import RomError
@@ -28,8 +29,7 @@ if TYPE_CHECKING:
 _HIGHEST = (1 << 31) - 1
 
 
-@dataclass(frozen=True, slots=True)
-class AnimationFrame:
+class AnimationFrame(Struct, frozen=True):
     """A frame of an animation.
 
     Attributes
@@ -67,8 +67,7 @@ class AnimationFrame:
         text("name", self.name)
 
 
-@dataclass(frozen=True, slots=True)
-class Animation:
+class Animation(Struct, frozen=True):
     """The table of roots of a memory that holds several frames.
 
     Attributes
@@ -92,7 +91,7 @@ class Animation:
 
     def __post_init__(self) -> None:
         frames = tuple(instance(f"frames[{row}]", one, AnimationFrame) for row, one in enumerate(self.frames))
-        object.__setattr__(self, "frames", frames)
+        force_setattr(self, "frames", frames)
         if not frames:
             raise ValueError("an animation has one frame or more")
 

@@ -14,10 +14,10 @@ plain coarser world included, and the most similar one is taken.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.octree import _native
 from voxrt.octree.difference import SurfaceChange, diff, surface_change
@@ -31,8 +31,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Fit:
+class Fit(Struct, frozen=True, eq=False):
     """An octree that fits a memory, and what changed, as :func:`fit` returns it.
 
     Attributes

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 from voxrt.octree import _native
 from voxrt.octree.octree import Octree
@@ -10,8 +10,7 @@ from voxrt.octree.query import Corner  # noqa: TC001 - msgspec resolves the anno
 from voxrt.voxelize.arguments import instance
 
 
-@dataclass(frozen=True, slots=True)
-class Difference:
+class Difference(Struct, frozen=True):
     """Voxels that differ, counted exactly, as :func:`diff` returns them.
 
     Attributes
@@ -37,8 +36,7 @@ class Difference:
         return self.appeared + self.vanished + self.recoloured
 
 
-@dataclass(frozen=True, slots=True)
-class Region:
+class Region(Struct, frozen=True):
     """Voxels that differ and are connected by faces, edges or corners, as :func:`differing_regions` returns them.
 
     Attributes
@@ -111,8 +109,7 @@ def differing_regions(first: Octree, second: Octree) -> tuple[Region, ...]:
     )
 
 
-@dataclass(frozen=True, slots=True)
-class SurfaceChange:
+class SurfaceChange(Struct, frozen=True):
     """Surface voxels and how many of them changed, as :func:`surface_change` returns them.
 
     A surface voxel is solid, and one of its six neighbours is empty or outside the world.

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.octree import _native
 from voxrt.octree.octree import Octree
@@ -25,8 +25,7 @@ LEAF_LIMIT = 1 << 24
 """The most solid leaves that :func:`solid_leaves` returns."""
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Leaves:
+class Leaves(Struct, frozen=True, eq=False):
     """Some leaves, in Morton order, as :func:`leaves` returns them.
 
     Attributes

@@ -6,10 +6,10 @@ the idea: Laine and Karras, "Efficient Sparse Voxel Octrees", 2010, whose inner 
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec.structs import replace
 
 from voxrt.octree import _native
 from voxrt.octree.animation import frames_as_octants

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.octree.octree import Octree
 from voxrt.octree.query import as_corner
@@ -19,8 +19,7 @@ if TYPE_CHECKING:
     from voxrt.octree.query import Corner
 
 
-@dataclass(frozen=True, slots=True)
-class Octant:
+class Octant(Struct, frozen=True):
     """A leaf and its word, as :func:`octant_at` returns them.
 
     Attributes

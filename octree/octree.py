@@ -5,8 +5,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from msgspec import Struct
 
 if TYPE_CHECKING:
     import numpy as np
@@ -16,8 +17,7 @@ MAX_DEPTH = 16
 """The most levels below the root: 65,536 voxels per side."""
 
 
-@dataclass(frozen=True, eq=False, slots=True, weakref_slot=True, repr=False)
-class Octree:
+class Octree(Struct, frozen=True, eq=False, weakref=True):
     """A valid octree memory. :func:`build`, :func:`from_dense`, :func:`from_points` and :func:`decode` make one.
 
     Attributes

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.octree.leaf_arrays import solid_leaves
 from voxrt.octree.morton import morton
@@ -22,8 +22,7 @@ SEVERAL = -1
 """The owner of an octant whose voxels belong to several objects."""
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Owners:
+class Owners(Struct, frozen=True, eq=False):
     """The objects of a scene and the voxels that each owns.
 
     Attributes

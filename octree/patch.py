@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.octree.words import EMPTY
 
@@ -13,8 +13,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-@dataclass(frozen=True, eq=False, slots=True, repr=False)
-class Patch:
+class Patch(Struct, frozen=True, eq=False):
     """Writes that give a memory the octree of a commit, as :meth:`World.commit` returns them.
 
     All blocks are ones that no live root reaches: frames of these roots may be drawn while they are written. The word

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from msgspec import Struct
 
 if TYPE_CHECKING:
     from voxrt.octree.octree import Octree
@@ -11,8 +12,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize import Material
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Piece:
+class Piece(Struct, frozen=True, eq=False):
     """The voxels of a box, as :meth:`World.copy` returns them and :meth:`World.paste` takes them.
 
     Attributes

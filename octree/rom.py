@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
+from msgspec.structs import force_setattr
 
 from voxrt.octree.octree import Octree
 from voxrt.octree.statistics import census
@@ -15,8 +16,7 @@ MOST_NAME = 1000
 _MOST_MATERIALS = 256
 
 
-@dataclass(frozen=True, eq=False, slots=True, repr=False)
-class Rom:
+class Rom(Struct, frozen=True, eq=False):
     """An octree memory with its materials and its place in the scene.
 
     Attributes
@@ -61,14 +61,14 @@ class Rom:
         name = "".join("_" if "\ud800" <= c <= "\udfff" else c for c in text("name", self.name))
         if len(name) > MOST_NAME:
             raise ValueError(f"name has {len(name)} characters; it may have {MOST_NAME}")
-        object.__setattr__(self, "name", name)
+        force_setattr(self, "name", name)
         instance("octree", self.octree, Octree)
         if self.grid is not None and instance("grid", self.grid, Grid).depth != self.octree.depth:
             raise ValueError(f"grid has depth {self.grid.depth} and the octree depth {self.octree.depth}")
         if isinstance(self.materials, Material):
             raise TypeError("materials must be a sequence of Material, not one Material")
         materials = tuple(instance(f"materials[{row}]", one, Material) for row, one in enumerate(self.materials))
-        object.__setattr__(self, "materials", materials)
+        force_setattr(self, "materials", materials)
         if not 1 <= len(materials) <= _MOST_MATERIALS:
             raise ValueError(f"materials must have 1 to 256 entries, entry 0 for empty space, not {len(materials)}")
         if len(materials) < _MOST_MATERIALS and (used := max(census(self.octree).voxels)) >= len(materials):

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
+
+from msgspec import Struct
+from msgspec.structs import force_setattr
 
 from voxrt.octree.camera import POSITION_UNITS
 from voxrt.octree.query import Corner, as_box
@@ -18,8 +20,7 @@ _REACH = 1 << 20
 """Positions and radii are at most this, in voxels."""
 
 
-@dataclass(frozen=True, slots=True)
-class Box:
+class Box(Struct, frozen=True):
     """The voxels of a box.
 
     Attributes
@@ -43,12 +44,11 @@ class Box:
 
     def __post_init__(self) -> None:
         low, high = as_box(self.low, self.high)
-        object.__setattr__(self, "low", low)
-        object.__setattr__(self, "high", high)
+        force_setattr(self, "low", low)
+        force_setattr(self, "high", high)
 
 
-@dataclass(frozen=True, slots=True)
-class Sphere:
+class Sphere(Struct, frozen=True):
     """The voxels whose centres are in a ball, its surface included. Voxel v has its centre at v + 0.5.
 
     Attributes
@@ -73,12 +73,11 @@ class Sphere:
     radius: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "centre", _point("Sphere.centre", self.centre))
-        object.__setattr__(self, "radius", _sixteenths("Sphere.radius", real("Sphere.radius", self.radius, low=0)))
+        force_setattr(self, "centre", _point("Sphere.centre", self.centre))
+        force_setattr(self, "radius", _sixteenths("Sphere.radius", real("Sphere.radius", self.radius, low=0)))
 
 
-@dataclass(frozen=True, slots=True)
-class Capsule:
+class Capsule(Struct, frozen=True):
     """The voxels whose centres are within a distance of a straight line, which makes tunnels, for example.
 
     Attributes
@@ -104,9 +103,9 @@ class Capsule:
     radius: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "start", _point("Capsule.start", self.start))
-        object.__setattr__(self, "end", _point("Capsule.end", self.end))
-        object.__setattr__(self, "radius", _sixteenths("Capsule.radius", real("Capsule.radius", self.radius, low=0)))
+        force_setattr(self, "start", _point("Capsule.start", self.start))
+        force_setattr(self, "end", _point("Capsule.end", self.end))
+        force_setattr(self, "radius", _sixteenths("Capsule.radius", real("Capsule.radius", self.radius, low=0)))
 
 
 Shape: TypeAlias = Box | Sphere | Capsule

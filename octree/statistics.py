@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.octree import _native
 from voxrt.octree.octree import Octree
@@ -19,8 +19,7 @@ if TYPE_CHECKING:
 _COUNTED: WeakKeyDictionary[Octree, Census] = WeakKeyDictionary()  # an octree never changes
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Census:
+class Census(Struct, frozen=True, eq=False):
     """Exact counts of leaves, as :func:`census` returns them.
 
     Attributes

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True)
-class WorldFigures:
+class WorldFigures(Struct, frozen=True):
     """How the memory of a :class:`World` is used.
 
     Attributes

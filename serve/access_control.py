@@ -4,24 +4,23 @@ from __future__ import annotations
 
 import hmac
 import ipaddress
-from dataclasses import dataclass
 from urllib.parse import parse_qs, urlsplit
+
+from msgspec import Struct
 
 from voxrt.serve.shown_text import shown_line
 
 _LOOPBACK_NAMES = ("localhost", "127.0.0.1", "::1")
 
 
-@dataclass(frozen=True, slots=True)
-class Refusal:
+class Refusal(Struct, frozen=True):
     """The answer to a connection that is refused: HTTP status and a line of text."""
 
     status: int
     text: str
 
 
-@dataclass(frozen=True, slots=True)
-class AccessControl:
+class AccessControl(Struct, frozen=True):
     """Checks requests for a WebSocket.
 
     Attributes

@@ -15,8 +15,9 @@ import asyncio
 import struct
 import time
 from contextlib import asynccontextmanager
-from dataclasses import replace
 from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
 
 from voxrt.board.errors import DeviceError, Refused
 from voxrt.board.view import Camera

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import time
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, cast
 
+from msgspec import Struct, field
 from websockets.asyncio.server import ServerConnection
 from websockets.frames import DATA_OPCODES, CloseCode, Frame, Opcode
 
@@ -80,8 +80,7 @@ class _GatedTransport:
             self._transport.resume_reading()
 
 
-@dataclass(frozen=True, slots=True)
-class ConnectionGuard:
+class ConnectionGuard(Struct, frozen=True):
     """What all connections of a server share.
 
     Attributes

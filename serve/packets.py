@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import struct
 import zlib
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.board.device import Counters, Frame
 from voxrt.board.errors import Refused
@@ -33,8 +33,7 @@ FRAME_HEADER: Final = _FRAME.size
 CHUNK_HEADER: Final = _CHUNK.size
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class FramePacket:
+class FramePacket(Struct, frozen=True, eq=False):
     """A frame with its numbers.
 
     Attributes
@@ -57,8 +56,7 @@ class FramePacket:
     frame: Frame
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Chunk:
+class Chunk(Struct, frozen=True, eq=False):
     """A part of an upload: number of the upload, offset in all its files together, and the bytes."""
 
     upload: int

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+
+from msgspec import Struct
 
 import voxrt.octree
 
@@ -30,8 +31,7 @@ HEADERS = (
 """HTTP headers of every file: the page loads nothing from elsewhere, and no other page may embed it."""
 
 
-@dataclass(frozen=True, slots=True)
-class PageFile:
+class PageFile(Struct, frozen=True):
     """The bytes of a file and its media type."""
 
     data: bytes

@@ -7,11 +7,11 @@ import logging
 import math
 import time
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
+from msgspec.structs import replace
 
 from voxrt.board.edited_scene import rom_of, with_materials
 from voxrt.board.errors import DeviceError, FrameDropped, Refused, TooSlow

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Annotated, Any, Literal, TypeAlias
 
 import msgspec
+from msgspec.structs import replace
 
 from voxrt.board.errors import Refused
 from voxrt.board.view import Camera, Lighting, Shading, View

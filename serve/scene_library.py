@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
+
+from msgspec import Struct, field
 
 from voxrt.board.errors import Refused
 
@@ -14,8 +15,7 @@ if TYPE_CHECKING:
     from voxrt.serve.scene_process import SceneReader
 
 
-@dataclass(frozen=True, slots=True)
-class SceneLibrary:
+class SceneLibrary(Struct, frozen=True):
     """The reader of files, and the server's own scenes.
 
     Attributes

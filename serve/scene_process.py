@@ -12,11 +12,11 @@ import os
 import signal
 import sys
 import tempfile
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 import msgspec
 import numpy as np
+from msgspec import Struct
 
 from voxrt.board.errors import Refused
 from voxrt.board.scene import Scene
@@ -57,8 +57,7 @@ class SceneReader(Protocol):
         """
 
 
-@dataclass(frozen=True, slots=True)
-class ChildReader:
+class ChildReader(Struct, frozen=True):
     """Makes scenes in a process of its own.
 
     Attributes

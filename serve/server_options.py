@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from msgspec import Struct, field
 
 
-@dataclass(frozen=True, slots=True)
-class Limits:
+class Limits(Struct, frozen=True):
     """The load that a server accepts.
 
     Attributes
@@ -55,8 +54,7 @@ class Limits:
     frame_bytes: int = 1 << 28
 
 
-@dataclass(frozen=True, slots=True)
-class ServerOptions:
+class ServerOptions(Struct, frozen=True):
     """Where a server listens, and who may connect.
 
     Attributes

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import time
-from dataclasses import asdict
 from functools import partial
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
+
+from msgspec.structs import asdict
 
 from voxrt.board.errors import Refused
 from voxrt.board.scene import MEMORY_SUFFIXES

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 LINE_BYTES = 32
 """Bytes of a line, which is a block of eight words."""
@@ -10,8 +10,7 @@ LINE_BYTES = 32
 _CLOCK_LIMIT = 1_000_000
 
 
-@dataclass(frozen=True, slots=True)
-class Dram:
+class Dram(Struct, frozen=True):
     """How fast an external memory is, in clocks of the ray tracer.
 
     Attributes
@@ -54,8 +53,7 @@ class Dram:
                 raise ValueError(f"{name} {getattr(self, name)} is not {low} … {high}")
 
 
-@dataclass(frozen=True, slots=True)
-class CacheCost:
+class CacheCost(Struct, frozen=True):
     """What a frame cost at the caches; they are empty when it starts.
 
     Attributes

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.sim.image import encode_png, save_png, show_picture
 
@@ -20,8 +20,7 @@ FACE_NONE = 3
 """The face of a pixel whose ray crossed none: a miss, or a camera inside a solid."""
 
 
-@dataclass(frozen=True, slots=True)
-class RenderCost:
+class RenderCost(Struct, frozen=True):
     """What a frame cost.
 
     Attributes
@@ -45,8 +44,7 @@ class RenderCost:
     cache: CacheCost | None = None
 
 
-@dataclass(frozen=True, eq=False, slots=True, repr=False)
-class Frame:
+class Frame(Struct, frozen=True, eq=False):
     """A rendered picture; row 0 is the top. A notebook shows it.
 
     Attributes

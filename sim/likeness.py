@@ -6,10 +6,10 @@ sides use the same rays, in voxels, and the same shading rule, so that only the 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.octree.camera import POSITION_UNITS, pixel_directions
 from voxrt.sim import _model
@@ -28,8 +28,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize import Grid, Scene, SurfaceAppearance
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class View:
+class View(Struct, frozen=True, eq=False):
     """What the camera sees of the meshes, or of the voxels.
 
     Attributes
@@ -47,8 +46,7 @@ class View:
     normal: NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
-class Likeness:
+class Likeness(Struct, frozen=True):
     """The similarity of meshes and voxels. NaN if nothing is seen that could be compared.
 
     Attributes
@@ -76,8 +74,7 @@ class Likeness:
     ssim: float
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Comparison:
+class Comparison(Struct, frozen=True, eq=False):
     """What one camera sees of the meshes and of the voxels, and their similarity, as :func:`compare` returns it."""
 
     meshes: View

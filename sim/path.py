@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from math import prod
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.octree import Octree
 from voxrt.octree.camera import DIRECTION_LIMIT, POSITION_UNITS
@@ -22,8 +22,7 @@ if TYPE_CHECKING:
     from voxrt.octree.camera import Camera, Triple
 
 
-@dataclass(frozen=True, slots=True)
-class Reading:
+class Reading(Struct, frozen=True):
     """A word that the ray read.
 
     Attributes
@@ -69,8 +68,7 @@ class Reading:
         return x + side, y + side, z + side
 
 
-@dataclass(frozen=True, slots=True, repr=False)
-class RayPath:
+class RayPath(Struct, frozen=True):
     """A ray and all that it read, as :func:`follow_ray` and :func:`follow_pixel` return it.
 
     Attributes

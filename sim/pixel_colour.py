@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.octree import Rom
 from voxrt.octree.camera import FACES, PLAIN_LIGHTING
@@ -20,8 +20,7 @@ if TYPE_CHECKING:
     from voxrt.sim.path import RayPath
 
 
-@dataclass(frozen=True, slots=True)
-class Surface:
+class Surface(Struct, frozen=True):
     """A surface that a ray met.
 
     Attributes
@@ -40,8 +39,7 @@ class Surface:
     voxel: tuple[int, int, int]
 
 
-@dataclass(frozen=True, slots=True)
-class PixelColour:
+class PixelColour(Struct, frozen=True):
     """The colour of a pixel and how it comes about, as :func:`explain_colour` returns it.
 
     Attributes

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.octree import Octree
 from voxrt.octree.camera import DIRECTION_LIMIT, POSITION_UNITS
@@ -20,8 +20,7 @@ _CHUNK = 1 << 20  # rays at a time: 24 MB of registers
 _MOST_EXACT = 1 << 53  # integers that float64 holds
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class RayHits:
+class RayHits(Struct, frozen=True, eq=False):
     """What N rays hit.
 
     Attributes

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
 import numpy as np
+from msgspec import Struct
+from msgspec.structs import replace
 
 from voxrt.octree import Rom, frame_octree
 from voxrt.octree.camera import BOUNCE_LIMIT, DIRECTION_LIMIT, PLAIN_LIGHTING, SAMPLES, lod_scale, sample_cameras
@@ -35,8 +36,7 @@ _FRAME_LIMIT = 1 << 14
 _WIDEST_CELL = 1024.0  # in pixels
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class EngineCheck:
+class EngineCheck(Struct, frozen=True, eq=False):
     """The same view from both engines, as :func:`check` returns it.
 
     Attributes

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import reduce
 from operator import add
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
+from msgspec.structs import replace
 
 from voxrt.octree import Rom
 from voxrt.octree.camera import Triple, average_cut_out, average_samples

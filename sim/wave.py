@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from msgspec import Struct
 
 from voxrt.octree.camera import Camera, Lighting
 from voxrt.sim.engine_arguments import palette_of, registers_of, shading_of
@@ -28,8 +29,7 @@ _RING = 12  # the lane's stages: rtl/lane/voxrt_lane.sv
 _REGISTER = 1 << 15  # components of a camera's directions are below it
 
 
-@dataclass(frozen=True, slots=True)
-class Signal:
+class Signal(Struct, frozen=True):
     """A signal of a wave.
 
     Attributes
@@ -54,8 +54,7 @@ class Signal:
         return int(next((value for when, value in reversed(self.changes) if when <= time), "0"), 2)
 
 
-@dataclass(frozen=True, slots=True)
-class Wave:
+class Wave(Struct, frozen=True):
     """The signals of a lane while it traces one ray.
 
     Attributes

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import base64
 import html
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from msgspec.structs import replace
 
 from voxrt.octree import Octree, Rom, build, census, coarsen, material_at
 from voxrt.sim import Frame, RayPath

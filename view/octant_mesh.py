@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.octree.leaf_arrays import Leaves
 from voxrt.octree.octant import addresses
@@ -21,8 +21,7 @@ SIDES = np.array([[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2,
 """The corners of each side, counter-clockwise from outside; corners count as octants do."""
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class OctantMesh:
+class OctantMesh(Struct, frozen=True, eq=False):
     """Some solid octants of a memory.
 
     Attributes

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
+from msgspec import Struct
+from msgspec.structs import replace
 
 from voxrt.octree.budget import coarsen
 from voxrt.octree.camera import FACES
@@ -31,8 +32,7 @@ Plane: TypeAlias = tuple[tuple[float, float, float], tuple[float, float, float]]
 """A normal and a point; octants on the side of the normal are cut away."""
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Pane:
+class Pane(Struct, frozen=True, eq=False):
     """One memory in a picture.
 
     Attributes
@@ -121,8 +121,7 @@ class Pane:
         return "\n".join(lines)
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class DrawnRay:
+class DrawnRay(Struct, frozen=True, eq=False):
     """A ray as a picture shows it, as :func:`voxrt.view.scene_overlay.drawn_ray` makes it.
 
     Attributes
@@ -147,8 +146,7 @@ class DrawnRay:
     table: tuple[str, ...]
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Preview:
+class Preview(Struct, frozen=True, eq=False):
     """A picture in which a pixel can be chosen.
 
     Attributes

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, TypeAlias
+
+from msgspec.structs import replace
 
 from voxrt.voxelize import arguments
 from voxrt.voxelize.errors import AssetError, DoesNotFitError, SceneWarning

@@ -6,10 +6,10 @@ few large octants instead of a skin of unit voxels.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.voxelize.collider_shapes import box_corners
 
@@ -54,8 +54,7 @@ def keeps_shape(transform: NDArray[np.float64]) -> bool:
     return bool(scale > 0 and np.abs(gram - scale * np.eye(3)).max() <= 1e-6 * scale)
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class RoundedBox:
+class RoundedBox(Struct, frozen=True, eq=False):
     """A box whose sides are powers of two voxels."""
 
     # int64, shape (3,): lowest and highest corner, in voxels.

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
+from msgspec import Struct
+from msgspec.structs import force_setattr
 
 from voxrt.voxelize import arguments
 from voxrt.voxelize.mesh import checked_surface
@@ -18,8 +19,7 @@ ColliderKind: TypeAlias = Literal["box", "sphere", "hull", "mesh"]
 COLLIDER_KINDS: tuple[ColliderKind, ...] = ("box", "sphere", "hull", "mesh")
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class BoxCollider:
+class BoxCollider(Struct, frozen=True, eq=False):
     """A box along the axes of its object's frame.
 
     Attributes
@@ -49,13 +49,12 @@ class BoxCollider:
         high = arguments.real_array("BoxCollider.maximum", self.maximum, (3,)).astype(np.float64, copy=False)
         if (high < low).any():
             raise ValueError(f"BoxCollider.maximum {high.tolist()} is below its minimum {low.tolist()}")
-        object.__setattr__(self, "minimum", low)
-        object.__setattr__(self, "maximum", high)
-        object.__setattr__(self, "pow2", arguments.flag("BoxCollider.pow2", self.pow2))
+        force_setattr(self, "minimum", low)
+        force_setattr(self, "maximum", high)
+        force_setattr(self, "pow2", arguments.flag("BoxCollider.pow2", self.pow2))
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class SphereCollider:
+class SphereCollider(Struct, frozen=True, eq=False):
     """A ball in its object's frame; an ellipsoid where the object's transform scales the axes differently.
 
     Attributes
@@ -84,12 +83,11 @@ class SphereCollider:
         radius = arguments.real("SphereCollider.radius", self.radius)
         if radius < 0:
             raise ValueError(f"SphereCollider.radius must not be negative, as {radius} is")
-        object.__setattr__(self, "centre", centre)
-        object.__setattr__(self, "radius", radius)
+        force_setattr(self, "centre", centre)
+        force_setattr(self, "radius", radius)
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class HullCollider:
+class HullCollider(Struct, frozen=True, eq=False):
     """The convex hull of points in its object's frame.
 
     Attributes
@@ -114,11 +112,10 @@ class HullCollider:
         points = arguments.real_array("HullCollider.positions", self.positions, ("V", 3))
         if not len(points):
             raise ValueError("HullCollider.positions must hold one point or more")
-        object.__setattr__(self, "positions", points.astype(np.float64, copy=False))
+        force_setattr(self, "positions", points.astype(np.float64, copy=False))
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class MeshCollider:
+class MeshCollider(Struct, frozen=True, eq=False):
     """Triangles that are voxelized in place of the rendered ones.
 
     Attributes
@@ -142,8 +139,8 @@ class MeshCollider:
 
     def __post_init__(self) -> None:
         positions, triangles = checked_surface("MeshCollider", self.positions, self.triangles)
-        object.__setattr__(self, "positions", positions)
-        object.__setattr__(self, "triangles", triangles)
+        force_setattr(self, "positions", positions)
+        force_setattr(self, "triangles", triangles)
 
 
 Collider: TypeAlias = BoxCollider | SphereCollider | HullCollider | MeshCollider

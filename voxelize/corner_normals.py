@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
+from msgspec.structs import force_setattr
 
 from voxrt.voxelize import arguments
 
@@ -13,8 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class CornerNormals:
+class CornerNormals(Struct, frozen=True, eq=False):
     """The normals that the author gave to the corners of a mesh's triangles.
 
     Attributes
@@ -45,8 +45,8 @@ class CornerNormals:
         rows = arguments.whole_array(
             "CornerNormals.rows", self.rows, ("T", 3), np.int32, low=-1, high=max(len(vectors) - 1, -1)
         )
-        object.__setattr__(self, "vectors", vectors)
-        object.__setattr__(self, "rows", rows)
+        force_setattr(self, "vectors", vectors)
+        force_setattr(self, "rows", rows)
 
     def __repr__(self) -> str:
         return f"CornerNormals(triangles={len(self.rows)}, vectors={len(self.vectors)})"

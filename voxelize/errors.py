@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 DAMAGED = "check the file in another program, and export it again"
 """How to mend a file that no program is likely to read."""
@@ -41,8 +41,7 @@ class DoesNotFitError(Exception):
     """Valid input that exceeds a limit: too many materials, too many voxels per side, too many words."""
 
 
-@dataclass(frozen=True, slots=True)
-class SceneWarning:
+class SceneWarning(Struct, frozen=True):
     """Something in the input that was ignored or replaced.
 
     Attributes

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
+from msgspec.structs import force_setattr
 
 from voxrt.voxelize import arguments
 
@@ -10,8 +11,7 @@ DEPTH_LIMIT = 16
 """The deepest octree: 65536 voxels per side."""
 
 
-@dataclass(frozen=True, slots=True)
-class Grid:
+class Grid(Struct, frozen=True):
     """A cube of 2**depth voxels per side. Its axes are the scene's axes: no swap, no mirror.
 
     Attributes
@@ -39,9 +39,9 @@ class Grid:
     voxel_size: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "depth", arguments.whole("Grid.depth", self.depth, 1, DEPTH_LIMIT))
-        object.__setattr__(self, "origin", arguments.vector("Grid.origin", self.origin))
-        object.__setattr__(self, "voxel_size", arguments.real("Grid.voxel_size", self.voxel_size, above=0))
+        force_setattr(self, "depth", arguments.whole("Grid.depth", self.depth, 1, DEPTH_LIMIT))
+        force_setattr(self, "origin", arguments.vector("Grid.origin", self.origin))
+        force_setattr(self, "voxel_size", arguments.real("Grid.voxel_size", self.voxel_size, above=0))
 
     @property
     def size(self) -> int:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
+from msgspec.structs import force_setattr
 
 from voxrt.voxelize import arguments
 
 
-@dataclass(frozen=True, slots=True)
-class Material:
+class Material(Struct, frozen=True):
     """A uniform material. Its id is its index in :attr:`Scene.materials <voxrt.voxelize.Scene.materials>`.
 
     Attributes
@@ -39,10 +39,10 @@ class Material:
     authored: bool = True
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "name", arguments.text("Material.name", self.name))
-        object.__setattr__(self, "colour", arguments.colour("Material.colour", self.colour))
-        object.__setattr__(self, "mirror", arguments.flag("Material.mirror", self.mirror))
-        object.__setattr__(self, "authored", arguments.flag("Material.authored", self.authored))
+        force_setattr(self, "name", arguments.text("Material.name", self.name))
+        force_setattr(self, "colour", arguments.colour("Material.colour", self.colour))
+        force_setattr(self, "mirror", arguments.flag("Material.mirror", self.mirror))
+        force_setattr(self, "authored", arguments.flag("Material.authored", self.authored))
 
 
 EMPTY = Material("empty", (24, 28, 36))

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
+from msgspec.structs import force_setattr
 
 from voxrt.voxelize import arguments
 from voxrt.voxelize.colour.appearance import SurfaceAppearance
@@ -18,8 +19,7 @@ if TYPE_CHECKING:
 _MOST_CELLS_PER_SIDE = 1 << 16
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class MaterialMap:
+class MaterialMap(Struct, frozen=True, eq=False):
     """Materials that vary over triangles, made for one grid by :func:`voxrt.voxelize.assign_colours`.
 
     Each mapped triangle lies in a raster of material ids. A point of the triangle has raster coordinates (column, row),
@@ -64,16 +64,15 @@ class MaterialMap:
         materials = arguments.whole_array(
             "MaterialMap.materials", self.materials, (cells,), np.uint8, low=0, high=MATERIAL_LIMIT
         )
-        object.__setattr__(self, "sizes", sizes)
-        object.__setattr__(self, "corners", corners)
-        object.__setattr__(self, "materials", materials)
+        force_setattr(self, "sizes", sizes)
+        force_setattr(self, "corners", corners)
+        force_setattr(self, "materials", materials)
 
     def __repr__(self) -> str:
         return f"MaterialMap(triangles={len(self.sizes)}, cells={len(self.materials)})"
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Mesh:
+class Mesh(Struct, frozen=True, eq=False):
     """Triangles in their object's frame. Instances share one mesh.
 
     Attributes
@@ -117,9 +116,9 @@ class Mesh:
     def __post_init__(self) -> None:
         positions, triangles = checked_surface("Mesh", self.positions, self.triangles)
         count = len(triangles)
-        object.__setattr__(self, "positions", positions)
-        object.__setattr__(self, "triangles", triangles)
-        object.__setattr__(
+        force_setattr(self, "positions", positions)
+        force_setattr(self, "triangles", triangles)
+        force_setattr(
             self,
             "materials",
             arguments.whole_array("Mesh.materials", self.materials, (count,), np.uint8, low=1, high=MATERIAL_LIMIT),

@@ -11,10 +11,10 @@ all others: they meet those voxels alone. Tetrahedra come first, so that voxels 
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec.structs import replace
 
 from voxrt.voxelize import _native, arguments
 from voxrt.voxelize.box_rounding import UNITS_PER_VOXEL

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
+from msgspec.structs import force_setattr
 
 from voxrt.voxelize import arguments
 
@@ -13,8 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class PointCloud:
+class PointCloud(Struct, frozen=True, eq=False):
     """Points without a surface. A voxel is solid where it holds enough of them.
 
     Attributes
@@ -43,13 +43,13 @@ class PointCloud:
 
     def __post_init__(self) -> None:
         positions = arguments.real_array("PointCloud.positions", self.positions, ("N", 3))
-        object.__setattr__(self, "positions", positions)
+        force_setattr(self, "positions", positions)
         if self.colours is not None:
             colours = arguments.whole_array(
                 "PointCloud.colours", self.colours, (len(positions), 3), np.uint8, low=0, high=255
             )
-            object.__setattr__(self, "colours", colours)
-        object.__setattr__(self, "least", arguments.whole("PointCloud.least", self.least, 1, MOST_POINTS))
+            force_setattr(self, "colours", colours)
+        force_setattr(self, "least", arguments.whole("PointCloud.least", self.least, 1, MOST_POINTS))
 
     def __repr__(self) -> str:
         return f"PointCloud(points={len(self.positions)}, coloured={self.colours is not None}, least={self.least})"

@@ -5,10 +5,11 @@ Scene frame: right-handed, metres, y up. A material's id is its index in :attr:`
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct, field
+from msgspec.structs import force_setattr
 
 from voxrt.voxelize import arguments
 from voxrt.voxelize.collider_shapes import BoxCollider, Collider, HullCollider, MeshCollider, SphereCollider
@@ -23,8 +24,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.errors import SceneWarning
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class SceneObject:
+class SceneObject(Struct, frozen=True, eq=False):
     """One object of the scene.
 
     Attributes
@@ -93,11 +93,11 @@ class SceneObject:
             arguments.choice("SceneObject.rule", self.rule, RULES)
         if self.fill is not None:
             arguments.choice("SceneObject.fill", self.fill, OBJECT_FILLS)
-        object.__setattr__(self, "transform", transform.astype(np.float64, copy=False))
-        object.__setattr__(self, "colliders", colliders)
-        object.__setattr__(self, "collider_material", material)
-        object.__setattr__(self, "hidden", arguments.flag("SceneObject.hidden", self.hidden))
-        object.__setattr__(self, "represented", arguments.flag("SceneObject.represented", self.represented))
+        force_setattr(self, "transform", transform.astype(np.float64, copy=False))
+        force_setattr(self, "colliders", colliders)
+        force_setattr(self, "collider_material", material)
+        force_setattr(self, "hidden", arguments.flag("SceneObject.hidden", self.hidden))
+        force_setattr(self, "represented", arguments.flag("SceneObject.represented", self.represented))
 
     def __repr__(self) -> str:
         shape = f"mesh={self.mesh!r}" if self.points is None else f"points={self.points!r}"
@@ -107,8 +107,7 @@ class SceneObject:
 _AFFINE_TOLERANCE = 1e-6
 
 
-@dataclass(frozen=True, slots=True)
-class Viewpoint:
+class Viewpoint(Struct, frozen=True):
     """The camera that an author gave a scene.
 
     Attributes
@@ -150,23 +149,22 @@ class Viewpoint:
         target = arguments.vector("Viewpoint.target", self.target)
         if eye == target:
             raise ValueError(f"Viewpoint.eye and Viewpoint.target must differ; both are {eye}")
-        object.__setattr__(self, "eye", eye)
-        object.__setattr__(self, "target", target)
+        force_setattr(self, "eye", eye)
+        force_setattr(self, "target", target)
         if self.field_of_view is not None:
             angle = arguments.real("Viewpoint.field_of_view", self.field_of_view, above=0, below=180)
-            object.__setattr__(self, "field_of_view", angle)
+            force_setattr(self, "field_of_view", angle)
         if self.up is not None:
             up = arguments.vector("Viewpoint.up", self.up)
             if not any(up):
                 raise ValueError("Viewpoint.up must have a direction, and is (0, 0, 0)")
-            object.__setattr__(self, "up", up)
-        object.__setattr__(self, "name", arguments.text("Viewpoint.name", self.name))
+            force_setattr(self, "up", up)
+        force_setattr(self, "name", arguments.text("Viewpoint.name", self.name))
         across, above = arguments.real_array("Viewpoint.shift", self.shift, (2,)).tolist()
-        object.__setattr__(self, "shift", (float(across), float(above)))
+        force_setattr(self, "shift", (float(across), float(above)))
 
 
-@dataclass(frozen=True, slots=True)
-class PointLight:
+class PointLight(Struct, frozen=True):
     """The light that an author gave a scene.
 
     Attributes
@@ -188,11 +186,10 @@ class PointLight:
     position: tuple[float, float, float]
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "position", arguments.vector("PointLight.position", self.position))
+        force_setattr(self, "position", arguments.vector("PointLight.position", self.position))
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Scene:
+class Scene(Struct, frozen=True, eq=False):
     """The content of an asset file, in the scene frame.
 
     Attributes
@@ -242,10 +239,10 @@ class Scene:
 
     def __post_init__(self) -> None:
         arguments.text("Scene.name", self.name)
-        object.__setattr__(self, "objects", tuple(self.objects))
-        object.__setattr__(self, "materials", tuple(self.materials))
-        object.__setattr__(self, "warnings", tuple(self.warnings))
-        object.__setattr__(self, "cameras", tuple(self.cameras))
+        force_setattr(self, "objects", tuple(self.objects))
+        force_setattr(self, "materials", tuple(self.materials))
+        force_setattr(self, "warnings", tuple(self.warnings))
+        force_setattr(self, "cameras", tuple(self.cameras))
         for index, camera in enumerate(self.cameras):
             arguments.instance(f"Scene.cameras[{index}]", camera, Viewpoint)
         for index, one in enumerate(self.objects):
@@ -257,7 +254,7 @@ class Scene:
         if self.light is not None:
             arguments.instance("Scene.light", self.light, PointLight)
         if self.voxel_size is not None:
-            object.__setattr__(self, "voxel_size", arguments.real("Scene.voxel_size", self.voxel_size, above=0))
+            force_setattr(self, "voxel_size", arguments.real("Scene.voxel_size", self.voxel_size, above=0))
         if not 1 <= len(self.materials) <= MATERIAL_LIMIT + 1:
             raise ValueError(f"Scene.materials must have 1 … {MATERIAL_LIMIT + 1} entries, not {len(self.materials)}")
         self._refuse_undeclared_materials()

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import hashlib
 from collections import Counter
-from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
+from msgspec import Struct
+from msgspec.structs import asdict, astuple, replace
 
 from voxrt.voxelize.colour.voxel_colours import DEFAULT_COLOURS, assign_colours
 from voxrt.voxelize.errors import DoesNotFitError, SceneWarning
@@ -34,8 +35,7 @@ _DEFORMED = {"positions", "normals"}
 """What an animation changes of a mesh; its triangles and their appearance stay."""
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class SceneFrames:
+class SceneFrames(Struct, frozen=True, eq=False):
     """The scenes of all frames, as :func:`join_scenes` makes them.
 
     Attributes
@@ -78,7 +78,7 @@ class SceneFrames:
         keys: dict[int, tuple[int, ...]] = {}
         for mesh in {id(item.mesh): item.mesh for item in self.union.objects}.values():
             key = keys[id(mesh)] = tuple(
-                id(getattr(mesh, field.name)) for field in fields(mesh) if field.name not in _DEFORMED
+                id(getattr(mesh, name)) for name in mesh.__struct_fields__ if name not in _DEFORMED
             )
             extent = _extent(mesh)
             if key not in largest or extent > largest[key][0]:
@@ -200,7 +200,7 @@ def _recoloured(mesh: Mesh, ids: NDArray[np.uint8]) -> Mesh:
 
 def _kept_mesh(mesh: Mesh, known: dict[object, object]) -> Mesh:
     """Return a mesh whose parts are those of an earlier frame where they are equal: itself where all are."""
-    parts = {field.name: _kept(getattr(mesh, field.name), known) for field in fields(mesh)}
+    parts = {name: _kept(part, known) for name, part in asdict(mesh).items()}
     key = tuple(map(id, parts.values()))  # `known` keeps them alive
     if key not in known:
         known[key] = replace(mesh, **parts)
@@ -213,14 +213,14 @@ def _kept(value: Value, known: dict[object, object]) -> Value:
 
 
 def _fingerprint(value: object) -> bytes:
-    """Return what equal values have in common and others do not: arrays by their bytes, dataclasses by their fields."""
+    """Return what equal values have in common and others do not: arrays by their bytes, structs by their fields."""
     digest = hashlib.blake2b(type(value).__name__.encode(), digest_size=16)
     if isinstance(value, np.ndarray):
         digest.update(f"{value.dtype.str}{value.shape}".encode())
         digest.update(np.ascontiguousarray(value).data)
-    elif is_dataclass(value):
-        for field in fields(value):
-            digest.update(_fingerprint(getattr(value, field.name)))
+    elif isinstance(value, Struct):
+        for part in astuple(value):
+            digest.update(_fingerprint(part))
     elif isinstance(value, tuple | list):
         digest.update(str(len(value)).encode())
         for part in value:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.voxelize.object_proxies import proxies
 
@@ -36,8 +36,7 @@ _LEAST = 0.3
 _CHUNK = 1 << 18
 
 
-@dataclass(frozen=True, slots=True)
-class StrayParts:
+class StrayParts(Struct, frozen=True):
     """Where nearly all of the surface is, and what lies elsewhere.
 
     `low` and `high` are the corners of a box that holds a share of the surface, `width` is the longest side of all, in
@@ -90,8 +89,7 @@ def _width_of(found: StrayParts) -> float:
     return max(high - low for low, high in zip(found.low, found.high, strict=True))
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class _Group:
+class _Group(Struct, frozen=True, eq=False):
     """The objects that share a mesh. Its triangles are numbered object by object."""
 
     points: NDArray[np.float64]  # shape (3, P), in the mesh's frame

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.voxelize import _native, arguments
 from voxrt.voxelize.scene_parts import SceneParts, unreachable
@@ -20,8 +20,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.scene import Scene
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class VolumeFractions:
+class VolumeFractions(Struct, frozen=True, eq=False):
     """How much of each voxel an object fills, whatever other objects there are.
 
     A voxel is listed where the surface of an object passes it. All others are filled whole, or not at all.

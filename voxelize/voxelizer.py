@@ -11,7 +11,6 @@ bounds the inside; voxels that only such a surface covers are empty.
 
 from __future__ import annotations
 
-from dataclasses import fields
 from typing import TYPE_CHECKING
 
 from voxrt.voxelize import _native, arguments
@@ -104,4 +103,4 @@ def voxelize(
 
 def voxels_of(depth: int, result: _native.Voxelized | _native.VoxelBlock) -> Voxels:
     """Return the voxels of a native result."""
-    return Voxels(depth, *(getattr(result, field.name) for field in fields(Voxels)[1:]))
+    return Voxels(depth, *(getattr(result, name) for name in Voxels.__struct_fields__[1:]))

@@ -6,9 +6,10 @@ octants.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING
+
+from msgspec import Struct, field
 
 from voxrt.voxelize.rules import Rule  # noqa: TC001 - msgspec reads it
 
@@ -19,8 +20,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.errors import SceneWarning
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Voxels:
+class Voxels(Struct, frozen=True, eq=False):
     """The solid voxels of a grid.
 
     Morton code: bit 3k is bit k of x, bit 3k+1 of y, bit 3k+2 of z, so the octant index is {z, y, x}. A brick holds
@@ -89,8 +89,7 @@ class ObjectMode(StrEnum):
     """It closes; faces or connected components that were inside out were turned, walls of cavities excepted."""
 
 
-@dataclass(frozen=True, slots=True)
-class ObjectReport:
+class ObjectReport(Struct, frozen=True):
     """How one object was voxelized.
 
     Attributes
@@ -121,8 +120,7 @@ class ObjectReport:
     rule: Rule = "touch"
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Voxelization:
+class Voxelization(Struct, frozen=True, eq=False):
     """Voxels, and how each object was voxelized.
 
     Attributes
@@ -147,8 +145,7 @@ class Voxelization:
         return f"Voxelization(voxels={self.voxels!r}, objects={len(self.objects)}, warnings={len(self.warnings)})"
 
 
-@dataclass(frozen=True, slots=True)
-class VoxelizationReport:
+class VoxelizationReport(Struct, frozen=True):
     """How each object was voxelized: a :class:`Voxelization` whose voxels were handed on block by block.
 
     Attributes

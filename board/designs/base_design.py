@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import hashlib
 import re
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -31,8 +31,7 @@ GOWIN_WIDTHS = (1, 2, 4, 8, 9, 16, 18, 32, 36)
 """The same of a GW2A: 8, 16 and 32 leave out every ninth bit."""
 
 
-@dataclass(frozen=True)
-class Slice:
+class Slice(Struct, frozen=True):
     """The part of a memory that a block RAM holds.
 
     Attributes

@@ -13,10 +13,11 @@ import hashlib
 import json
 import subprocess
 import sys
-from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from msgspec.structs import asdict
 
 from voxrt.board.designs import gowin
 from voxrt.board.designs.base_design import GOWIN_WIDTHS, base_contents, find_slices, match_slices

@@ -12,9 +12,10 @@ import json
 import re
 import sys
 from collections import Counter, defaultdict
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from msgspec import Struct
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -28,8 +29,7 @@ _MADE_UP = re.compile(r"_(?:LUT4|TRELLIS_FF|PFUMX|L6MUX21|CCU2C|DP16KD|TRELLIS_D
 _CLOCKS = {"CLKOP": "bit", "CLKOS": "pixel", "CLKOS2": "system", "CLKOS3": "chip"}  # board_pll.sv
 
 
-@dataclass(frozen=True, order=True, slots=True)
-class Crossing:
+class Crossing(Struct, frozen=True, order=True):
     """Registers that depend on registers of another clock.
 
     Attributes
@@ -52,8 +52,7 @@ class Crossing:
     is_synchronized: bool
 
 
-@dataclass(frozen=True, slots=True)
-class _Element:
+class _Element(Struct, frozen=True):
     """What one clock of a cell takes, and what it gives."""
 
     clock: int
@@ -232,4 +231,4 @@ def _register(names: Mapping[int, str], bit: int, cell: str) -> str:
 
 if __name__ == "__main__":
     for crossing in find_crossings(json.loads(Path(sys.argv[1]).read_text()), sys.argv[2]):
-        print(*(getattr(crossing, name) for name in crossing.__slots__), sep="\t")
+        print(*(getattr(crossing, name) for name in crossing.__struct_fields__), sep="\t")

@@ -9,10 +9,10 @@ A block RAM has 1,024 rows of 18 bits, as in `base_design`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.board.designs.base_design import encode_slice
 
@@ -29,8 +29,7 @@ _FRAMES = 256  # of a row of block RAMs
 _ZERO = ord("0")
 
 
-@dataclass(frozen=True)
-class BlockRams:
+class BlockRams(Struct, frozen=True):
     """Where the block RAMs of a design are in its ``.fs``.
 
     Attributes

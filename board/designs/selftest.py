@@ -5,10 +5,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.board.designs.boot_table import BOARD_REGISTERS
 from voxrt.board.errors import DeviceError
@@ -57,8 +57,7 @@ _LAST_STAGE = 3
 State = Literal["passed", "failed", "open"]
 
 
-@dataclass(frozen=True, slots=True)
-class Finding:
+class Finding(Struct, frozen=True):
     """What one part of the self-test found.
 
     Attributes

@@ -10,10 +10,10 @@ import math
 import threading
 import time
 from contextlib import contextmanager
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec.structs import replace
 
 from voxrt.board.designs.boot_table import (
     BOARD_REGISTERS,

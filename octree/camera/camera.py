@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -22,8 +22,7 @@ REGISTER_LIMIT = 1 << 15
 """Every component of look, right and up is smaller than this."""
 
 
-@dataclass(frozen=True, slots=True)
-class Camera:
+class Camera(Struct, frozen=True):
     """What the ray generator reads: direction = look + right * (column - W // 2) + up * (H // 2 - row).
 
     Attributes

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal, TypeAlias
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from voxrt.octree.camera.camera import Triple  # noqa: TC001 - manifests are read by the annotations of this class
 
@@ -26,8 +28,7 @@ FACES: Faces = (189, 189, 140, 255, 219, 219)
 """The default: the top (+y) is the brightest, the bottom the darkest, and the sides differ."""
 
 
-@dataclass(frozen=True, slots=True)
-class Lighting:
+class Lighting(Struct, frozen=True):
     """How to shade a picture.
 
     Attributes

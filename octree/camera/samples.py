@@ -6,10 +6,10 @@ devices can be compared sample by sample.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec.structs import replace
 
 from voxrt.octree.camera.camera import DIRECTION_LIMIT, REGISTER_LIMIT, as_triple
 

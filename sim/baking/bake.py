@@ -5,10 +5,11 @@ The native code is the manual: ``src/bake/baked_light.h``.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
+from msgspec.structs import replace
 
 from voxrt.octree import Octree, Rom
 from voxrt.octree.morton import positions
@@ -28,8 +29,7 @@ MOST_COLOURS = 254
 """The most colours of baked light in one memory."""
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class BakedLight:
+class BakedLight(Struct, frozen=True, eq=False):
     """The light on the surface of a memory, before colours are reduced to a palette.
 
     Attributes

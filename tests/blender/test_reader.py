@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 bpy = pytest.importorskip("bpy", reason="Blender's module bpy is not here: make blender-test")
 

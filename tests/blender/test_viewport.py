@@ -132,8 +132,7 @@ def test_other_changes_build_the_whole(looking, change):
 
 
 def test_views_without_perspective_are_not_rendered(looking):
-    from dataclasses import replace
-
+    from msgspec.structs import replace
     from voxrt_extension.viewport import Viewport
 
     shown = Viewport()

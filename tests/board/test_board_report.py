@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 from fakes.box_scenes import boxes, ignore
 from fakes.pynq import Core, install
+from msgspec.structs import replace
 
 from voxrt.board.board_report import cameras_around, check_views
 from voxrt.board.scene_memory import SceneMemory

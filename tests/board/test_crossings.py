@@ -6,11 +6,11 @@ import csv
 import json
 import subprocess
 import sys
-from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+from msgspec.structs import replace
 
 from voxrt.board.designs import build
 from voxrt.board.designs.base_design import base_contents

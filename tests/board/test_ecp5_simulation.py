@@ -5,7 +5,6 @@ The pictures are those of the exact model. The protocol is that of fakes/board_h
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +12,7 @@ import pytest
 from fakes.board_host import Host, cameras_around, expected_crc, picture
 from fakes.box_scenes import ignore
 from fakes.simulated_port import SimulatedPort
+from msgspec.structs import replace
 from oracles.verilator import needs_compiled_verilator
 
 from voxrt.board.board_report import cameras_around as report_cameras

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import socket
 import struct
-from dataclasses import replace
 from functools import partial
 from itertools import chain, repeat
 
@@ -17,6 +16,7 @@ from fakes.box_scenes import boxes, ignore, picture_of, view_of
 from fakes.device import FakeDevice, opened_or_skipped
 from fakes.ecp5_board import Board
 from fakes.pynq import Core, install
+from msgspec.structs import replace
 
 from voxrt.board import tcp_device
 from voxrt.board.designs.serial_device import _LIST_WORDS, SerialDevice

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from fakes.box_scenes import boxes, ignore, picture_of, view_of
 from fakes.device import FakeDevice
 from fakes.ecp5_board import Board
 from fakes.pynq import Core, install
+from msgspec.structs import replace
 
 from voxrt.board.designs.serial_device import SerialDevice
 from voxrt.board.designs.serial_link import SerialLink

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from fakes.box_scenes import boxes, ignore
 from fakes.pynq import BASE, Core, install
+from msgspec.structs import replace
 
 from voxrt.board import register_device
 from voxrt.board.agent import voxrt_board

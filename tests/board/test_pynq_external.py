@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from fakes.box_scenes import boxes, ignore, picture_of, scene_of, view_of
 from fakes.pynq import Core, install
+from msgspec.structs import replace
 
 from voxrt.board.agent.voxrt_board import WORDS_BEFORE, Board, RefusedError
 from voxrt.board.errors import DeviceError

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from fakes.box_scenes import boxes, ignore, picture_of, view_of
 from fakes.pynq import Core, install
+from msgspec.structs import replace
 
 from voxrt.board.errors import DeviceError
 from voxrt.board.register_writes import decode_fields

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from contextlib import nullcontext
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,6 +11,7 @@ from fakes.device import FakeDevice, scene, wide_scene
 from fakes.ecp5_board import Board
 from hypothesis import given
 from hypothesis import strategies as st
+from msgspec.structs import replace
 
 from voxrt.board.designs.serial_device import SerialDevice
 from voxrt.board.designs.serial_link import SerialLink

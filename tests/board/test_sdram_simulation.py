@@ -6,13 +6,13 @@ The pictures are those of the exact model.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from fakes.board_host import Host, cameras_around, expected_crc, picture
 from fakes.simulated_port import SimulatedPort
+from msgspec.structs import replace
 from oracles.verilator import needs_compiled_verilator
 
 from voxrt.board.designs import serial_device

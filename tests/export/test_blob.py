@@ -3,13 +3,13 @@ import shutil
 import struct
 import subprocess
 import zlib
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from fakes.blob import rewritten
 from hypothesis import given, settings
+from msgspec.structs import replace
 from oracles.kaitai import Description
 from oracles.random_worlds import dense_cubes
 

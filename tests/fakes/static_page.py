@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import base64
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from fakes.browser import RESTS
+from msgspec.structs import replace
 
 from voxrt.octree.camera import Camera, Lighting
 from voxrt.options.notations import BACKGROUNDS

@@ -57,7 +57,7 @@ def test_golden_words(path):
 @pytest.mark.parametrize("depth", [1, 2, 3, 7, 16])
 def test_nothing_is_one_word(depth):
     empty = voxels_from_dense(np.zeros((2, 2, 2)))
-    tree = octree.build(Voxels(depth, *[getattr(empty, n) for n in Voxels.__dataclass_fields__ if n != "depth"]))
+    tree = octree.build(Voxels(depth, *[getattr(empty, n) for n in Voxels.__struct_fields__ if n != "depth"]))
     assert tree.words.tolist() == [0xFFFFFF00]
     assert tree.blocks == 0
 
@@ -267,4 +267,4 @@ def test_broken_bricks_are_refused_on_any_thread():
         codes = voxels.brick_codes.copy()
         codes[wrong] = codes[wrong - 1]
         with pytest.raises(ValueError, match=r"is empty|Morton order"):
-            octree.build(Voxels(8, codes, *(getattr(voxels, n) for n in list(Voxels.__dataclass_fields__)[2:])))
+            octree.build(Voxels(8, codes, *(getattr(voxels, n) for n in Voxels.__struct_fields__[2:])))

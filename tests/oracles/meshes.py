@@ -1,8 +1,7 @@
 """Meshes with known answers, and scenes of them, made without the code under test."""
 
-from dataclasses import replace
-
 import numpy as np
+from msgspec.structs import replace
 
 from voxrt.voxelize import EMPTY, Material, Mesh, Scene, SceneObject
 

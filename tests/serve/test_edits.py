@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import base64
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from fakes.box_scenes import boxes, scene_of, view_of
 from fakes.device import FakeDevice
 from fakes.frame_server import controlled, frame_where, served
+from msgspec.structs import replace
 from oracles import worlds
 from oracles.cuts import memory_of
 

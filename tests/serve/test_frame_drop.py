@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from threading import Timer
 
 import numpy as np
 import pytest
 from fakes.device import FakeDevice, never_merged, opened_or_skipped, scene
 from fakes.frame_server import CAMERA, controlled, frame_where, ignore
+from msgspec.structs import replace
 from oracles import worlds
 from oracles.cuts import memory_of
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import threading
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from fakes.browser import RESTS, chromium
 from fakes.page_server import rom_of, scene_of, serving, shown_page
+from msgspec.structs import replace
 from oracles import worlds
 
 from voxrt.board.simulated.core import open_rtl

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import base64
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from fakes.browser import RESTS
 from fakes.page_server import scene_of, shown_page
+from msgspec.structs import replace
 from oracles import worlds
 
 from voxrt.board.edited_scene import rom_of

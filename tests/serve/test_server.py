@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from fakes.device import FakeDevice, scene
 from fakes.frame_server import CAMERA, controlled, frame_where, pixel, served
 from fakes.sockets import ended, raw_connection
+from msgspec.structs import replace
 from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-from dataclasses import replace
 from itertools import pairwise
 
 import pytest
@@ -11,6 +10,7 @@ from fakes.blob import mem_files
 from fakes.device import FakeDevice, scene, wide_scene
 from fakes.frame_server import controlled, frame_where, ignore, pixel, served
 from fakes.scene_reader import ReadyScenes
+from msgspec.structs import replace
 
 from voxrt.board.errors import Refused
 from voxrt.serve import request_handler

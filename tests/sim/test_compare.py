@@ -1,10 +1,10 @@
 """Voxels against their meshes, where the answer is known."""
 
 import sys
-from dataclasses import replace
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 from voxrt.octree import Rom, from_dense
 from voxrt.sim import Camera, Lighting, SimulatorError, compare, comparison_sheet, frame_scene, render

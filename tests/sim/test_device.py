@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
 import pytest
 from fakes.box_scenes import ignore
 from fakes.device import opened_or_skipped
+from msgspec.structs import replace
 from oracles import worlds
 from oracles.cuts import memory_of
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import replace
 from fractions import Fraction
 from math import floor
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 from voxrt.octree import Rom, from_points
 from voxrt.octree.camera import Camera, average_cut_out, average_samples, look_at, pixel_directions, sample_cameras

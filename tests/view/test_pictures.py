@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import ctypes
 import sys
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from msgspec.structs import replace
 from oracles.octree import unshared_words, walk
 from oracles.random_worlds import dense_cubes
 from PIL import Image

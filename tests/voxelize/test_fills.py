@@ -1,9 +1,8 @@
 """Fills of objects' own: against brute force, with every rule, in blocks, and as each reader takes them."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
+from msgspec.structs import replace
 from oracles.meshes import box_mesh, icosphere, one_object, scene_of, without
 from oracles.rules import centres_inside
 from oracles.voxels import compete, dense, shell, snap, voxelize_mesh

@@ -1,9 +1,8 @@
 """The parts of one surface that a file has in several objects are filled as one surface."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
+from msgspec.structs import replace
 from oracles.meshes import MATERIALS, box_mesh, icosphere
 from oracles.voxels import dense
 

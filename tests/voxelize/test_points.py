@@ -1,12 +1,12 @@
 """Point clouds: which voxels are solid, their colours, and what is filled, against plain loops over dense arrays."""
 
 from collections import defaultdict, deque
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from msgspec.structs import replace
 
 import voxrt
 from voxrt.octree import material_at, to_dense

@@ -5,10 +5,9 @@ of all boxes: a voxel has to be solid where it meets a box that is smaller by so
 does not meet one that is larger by as much.
 """
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
+from msgspec.structs import replace
 from oracles.meshes import cut_box
 from oracles.voxels import dense
 

@@ -1,9 +1,8 @@
 """Parts far away from nearly all of the surface are named; faces without area do not stretch the grid."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
+from msgspec.structs import replace
 from oracles.meshes import MATERIALS, box_mesh, icosphere, joined
 
 from voxrt.voxelize import Mesh, Scene, SceneObject, fit_grid

@@ -146,7 +146,7 @@ def test_threads_do_not_matter(data):
     rng = np.random.default_rng(seed)
     meshes = [icosphere(2, rng.uniform(0, 64, 3), rng.uniform(1, 40), material=i + 1) for i in range(3)]
     one, three = (voxelize(scene_of(*meshes), UNIT_GRID[6], threads=n).voxels for n in (1, 3))
-    for name in one.__slots__:
+    for name in one.__struct_fields__:
         np.testing.assert_array_equal(getattr(one, name), getattr(three, name))
 
 

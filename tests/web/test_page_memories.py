@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,6 +22,7 @@ from fakes.static_page import (
     shown,
     shows_exactly,
 )
+from msgspec.structs import replace
 
 import voxrt
 from voxrt import aim_camera

@@ -5,11 +5,11 @@ manifold3d does the geometry: every solid is closed, and a boolean of closed sol
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import manifold3d
 import numpy as np
+from msgspec import Struct
 
 from voxrt.voxelize import arguments, primitive_meshes
 from voxrt.voxelize.authoring.transforms import FARTHEST, SolidError, placement
@@ -25,8 +25,7 @@ Axis: TypeAlias = Literal["x", "y", "z"]
 _AXES: tuple[Axis, ...] = ("x", "y", "z")
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Solid:
+class Solid(Struct, frozen=True, eq=False):
     """A closed solid in metres. Operators: ``a | b`` union, ``a - b`` difference, ``a & b`` intersection.
 
     :func:`box`, :func:`sphere`, :func:`cylinder`, :func:`cone`, :func:`extrude`, :func:`hull` and :func:`closed` make

@@ -5,10 +5,11 @@ Colours multiply in linear light. Alpha is coverage.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
+from msgspec.structs import force_setattr
 
 from voxrt.voxelize import _native, arguments
 from voxrt.voxelize.colour.texture import Texture
@@ -17,8 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Appearance:
+class Appearance(Struct, frozen=True, eq=False):
     """What a material of a file says about a surface: a colour factor, a texture, an alpha cutoff.
 
     Attributes
@@ -54,15 +54,14 @@ class Appearance:
     def __post_init__(self) -> None:
         arguments.text("Appearance.name", self.name)
         red, green, blue, alpha = arguments.real_array("Appearance.factor", self.factor, (4,)).tolist()
-        object.__setattr__(self, "factor", (float(red), float(green), float(blue), float(alpha)))
+        force_setattr(self, "factor", (float(red), float(green), float(blue), float(alpha)))
         if self.texture is not None:
             arguments.instance("Appearance.texture", self.texture, Texture)
-        object.__setattr__(self, "cutoff", arguments.real("Appearance.cutoff", self.cutoff))
-        object.__setattr__(self, "mirror", arguments.flag("Appearance.mirror", self.mirror))
+        force_setattr(self, "cutoff", arguments.real("Appearance.cutoff", self.cutoff))
+        force_setattr(self, "mirror", arguments.flag("Appearance.mirror", self.mirror))
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class SurfaceAppearance:
+class SurfaceAppearance(Struct, frozen=True, eq=False):
     """The appearance of the triangles of one mesh, in the order of its triangles.
 
     Attributes
@@ -103,13 +102,13 @@ class SurfaceAppearance:
         rows = arguments.whole_array(
             "SurfaceAppearance.rows", self.rows, ("T",), np.int32, low=-1, high=len(entries) - 1
         )
-        object.__setattr__(self, "entries", entries)
-        object.__setattr__(self, "rows", rows)
+        force_setattr(self, "entries", entries)
+        force_setattr(self, "rows", rows)
         # Texture look-up takes any coordinates; those that are not finite read the texture's corner.
         uv = arguments.real_array("SurfaceAppearance.uv", self.uv, (len(rows), 3, 2), finite=False)
-        object.__setattr__(self, "uv", uv)
+        force_setattr(self, "uv", uv)
         colours = arguments.real_array("SurfaceAppearance.colours", self.colours, (len(rows), 3, 4))
-        object.__setattr__(self, "colours", colours)
+        force_setattr(self, "colours", colours)
 
     def __repr__(self) -> str:
         return f"SurfaceAppearance(triangles={len(self.rows)}, entries={len(self.entries)})"

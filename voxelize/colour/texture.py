@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
+from msgspec import Struct
+from msgspec.structs import force_setattr
 
 from voxrt.voxelize import arguments
 
@@ -19,8 +20,7 @@ Wrap: TypeAlias = Literal["repeat", "mirror", "clamp"]
 WRAPS: tuple[Wrap, ...] = ("repeat", "mirror", "clamp")
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Texture:
+class Texture(Struct, frozen=True, eq=False):
     """An image that colours surfaces.
 
     Attributes
@@ -56,9 +56,9 @@ class Texture:
         wrap = tuple(arguments.choice("Texture.wrap", one, WRAPS) for one in self.wrap)
         if len(wrap) != 2:
             raise ValueError(f"Texture.wrap must be two modes, for u and v, not {len(wrap)}")
-        object.__setattr__(self, "pixels", pixels)
-        object.__setattr__(self, "wrap", wrap)
-        object.__setattr__(self, "nearest", arguments.flag("Texture.nearest", self.nearest))
+        force_setattr(self, "pixels", pixels)
+        force_setattr(self, "wrap", wrap)
+        force_setattr(self, "nearest", arguments.flag("Texture.nearest", self.nearest))
 
     def __repr__(self) -> str:
         height, width = self.pixels.shape[:2]

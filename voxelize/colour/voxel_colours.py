@@ -6,10 +6,10 @@ one palette (src/colour/assign_colours.h).
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec.structs import replace
 
 from voxrt.voxelize import _native, arguments
 from voxrt.voxelize.errors import DoesNotFitError

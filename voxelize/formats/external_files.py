@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from stat import S_ISDIR, S_ISREG
 from typing import TYPE_CHECKING
+
+from msgspec import Struct
 
 from voxrt.voxelize.errors import AssetError
 
@@ -65,8 +66,7 @@ def refuse_pointer(path: object, data: bytes, place: str = "") -> None:
         raise AssetError(path, "is a Git LFS pointer, which stands for the file", place=place, fix="run: git lfs pull")
 
 
-@dataclass(frozen=True, slots=True)
-class ExternalFiles:
+class ExternalFiles(Struct, frozen=True):
     """The files that an asset refers to by name: those in its folder and below may be opened, and no others.
 
     Whether a name leads out of the folder is told from the name and the links in the folder alone: nobody learns which

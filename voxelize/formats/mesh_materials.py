@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
+from msgspec.structs import replace
 
 from voxrt.voxelize import _native
 from voxrt.voxelize.colour.appearance import SurfaceAppearance
@@ -23,8 +24,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.warning_log import WarningLog
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class LoadedMesh:
+class LoadedMesh(Struct, frozen=True, eq=False):
     """A mesh as a loader reads it: triangles with an appearance have no material yet."""
 
     # As in :class:`~voxrt.voxelize.scene.Mesh`.

@@ -9,10 +9,10 @@ from __future__ import annotations
 import math
 import os
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt import sim
 from voxrt.board.designs.description import CACHED
@@ -36,8 +36,7 @@ SDRAM_CLOCKS = (40, 30)
 """Times of an SDRAM that a screen reads too: clocks from a line's address to its first beat, and from line to line."""
 
 
-@dataclass(frozen=True, slots=True)
-class BoardTracer:
+class BoardTracer(Struct, frozen=True):
     """The ray tracer of a board: what decides how fast it is."""
 
     lanes: int
@@ -46,8 +45,7 @@ class BoardTracer:
     buffer_lines: int  # rows of a picture that the board's line buffer holds
 
 
-@dataclass(frozen=True, slots=True)
-class BeamFit:
+class BeamFit(Struct, frozen=True):
     """What a board shows of a scene.
 
     `lead`: how many lines of the screen each row is complete before it is shown, at least. It is negative where rows

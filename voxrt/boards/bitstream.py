@@ -11,12 +11,12 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import msgspec
+from msgspec import Struct
 
 from voxrt.board.designs import build as design_build
 from voxrt.board.designs.base_design import Slice, patch_config
@@ -87,8 +87,7 @@ class BaseDesign(msgspec.Struct, frozen=True):
         return BoardTracer(self.core["Lanes"], self.core["RayClocks"], clock_hz, self.buffer_lines)
 
 
-@dataclass(frozen=True, slots=True)
-class PlacedBoard:
+class PlacedBoard(Struct, frozen=True):
     """A board with its placed design."""
 
     name: str  # for commands

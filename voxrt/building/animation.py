@@ -5,8 +5,9 @@ All frames have one grid and one palette, so that equal parts of them are equal 
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Unpack
+
+from msgspec.structs import replace
 
 from voxrt import export, octree, voxelize
 from voxrt.building.fitting import fit_interior

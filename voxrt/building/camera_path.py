@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from msgspec import Struct
 
 from voxrt import sim
 from voxrt.errors import ToolError
@@ -28,8 +29,7 @@ _MOST_BYTES = 1 << 26
 _KEYS = {"position", "look", "right", "up"}
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class PictureJob:
+class PictureJob(Struct, frozen=True, eq=False):
     """What all pictures of a path have in common."""
 
     rom: Rom
@@ -37,8 +37,7 @@ class PictureJob:
     check: bool  # whether both engines render each picture
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class PathPicture:
+class PathPicture(Struct, frozen=True, eq=False):
     """A picture of a path."""
 
     number: int  # that of its camera, counted from 0

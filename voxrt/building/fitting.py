@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
+from msgspec.structs import replace
 
 from voxrt import octree, sim
 from voxrt.octree.camera import PLAIN_LIGHTING
@@ -22,8 +23,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize import Material
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class BudgetFit:
+class BudgetFit(Struct, frozen=True, eq=False):
     """What fitting a memory to a budget took.
 
     Attributes
@@ -47,8 +47,7 @@ class BudgetFit:
     lossless: tuple[int, int] | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class InteriorFit:
+class InteriorFit(Struct, frozen=True):
     """What became of the voxels that no ray from outside can reach.
 
     Attributes

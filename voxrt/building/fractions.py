@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import io
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
+from msgspec.structs import replace
 
 from voxrt import octree
 from voxrt.export.atomic import write_atomically

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
 from pathlib import Path
+
+from msgspec import Struct
 
 from voxrt.export import WORD_SUFFIXES
 from voxrt.export.outputs import OutputError, check_file, check_folder, check_output_folder
@@ -12,8 +13,7 @@ from voxrt.octree import RomError
 from voxrt.voxelize.formats.external_files import as_text
 
 
-@dataclass(frozen=True, slots=True)
-class OutputFiles:
+class OutputFiles(Struct, frozen=True):
     """Where a build writes."""
 
     name: str  # the name of the memory

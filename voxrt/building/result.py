@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from msgspec import Struct, field
 
 from voxrt import export, octree
 from voxrt.options.shared import PREVIEW_SIZE
@@ -23,8 +24,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize import ObjectReport, Scene, SceneWarning
 
 
-@dataclass(frozen=True, eq=False, slots=True, repr=False)
-class BuildResult:
+class BuildResult(Struct, frozen=True, eq=False):
     """What a build made. A notebook shows its picture.
 
     Attributes

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.plans.open_workers import open_workers
 from voxrt.plans.tile_store import TileStore, sum_tallies
@@ -43,8 +44,7 @@ _TILES_PER_WORKER = 4
 _LEAST_SIDE = 512
 
 
-@dataclass(frozen=True, slots=True)
-class ClusterProgress:
+class ClusterProgress(Struct, frozen=True):
     """How far a cluster is with a build."""
 
     done: int  # finished tiles

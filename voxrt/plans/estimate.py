@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.voxelize.rules import RULES
 
@@ -30,8 +30,7 @@ _BYTES_PER_COLOURED_VOXEL = 8
 _BYTES_PER_RULED_VOXEL = {"touch": 0, "centre": 10, "half": 12}
 
 
-@dataclass(frozen=True, slots=True)
-class BuildEstimate:
+class BuildEstimate(Struct, frozen=True):
     """What a build will take, to about a factor of two.
 
     Examples

@@ -6,8 +6,10 @@ words as those of all voxels at once.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from voxrt import voxelize
 from voxrt.options.build_options import DEFAULT_DEPTH
@@ -32,8 +34,7 @@ _BYTES_OF_BLOCK = 32
 _COPIES_ON_DISK = 3  # the tiles, the blocks that are joined, and the words
 
 
-@dataclass(frozen=True, slots=True)
-class BuildPlan:
+class BuildPlan(Struct, frozen=True):
     """How a scene becomes an octree, and what that takes."""
 
     grid: Grid

@@ -12,10 +12,10 @@ import re
 import struct
 import zlib
 from contextlib import suppress
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.export.atomic import write_atomically
 from voxrt.export.outputs import OutputError
@@ -47,8 +47,7 @@ _BYTES_OF_BLOCK = 32
 _FORGED = "a finished tile is not what its build writes; remove the folder of the tiles, NAME.tiles, and build again"
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Tile:
+class Tile(Struct, frozen=True, eq=False):
     """A finished tile, or several that were joined.
 
     The octree is of the whole world, empty outside of the tile. The tallies are of the objects that it reaches: int64,

@@ -7,12 +7,13 @@ and does one task at a time: the native stages use its threads.
 from __future__ import annotations
 
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from threading import Lock
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt import octree, voxelize
 from voxrt.errors import ToolError
@@ -84,8 +85,7 @@ def finish_tile(
     return tile
 
 
-@dataclass(frozen=True, slots=True)
-class TileJob:
+class TileJob(Struct, frozen=True):
     """What all tiles of a build have in common.
 
     A worker that finds another key than that of the store has another asset or program.
@@ -96,8 +96,7 @@ class TileJob:
     store: TileStore  # where tiles go
 
 
-@dataclass(frozen=True, slots=True)
-class TileDone:
+class TileDone(Struct, frozen=True):
     """A tile, or several that were joined, in the folder."""
 
     name: str  # its name there

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeVar
+
+from msgspec import Struct
 
 from voxrt.errors import ToolError
 
@@ -45,8 +46,7 @@ class Workers:
         yield from enumerate(task(*shared, *call) for call in calls)
 
 
-@dataclass(frozen=True, slots=True)
-class Failure:
+class Failure(Struct, frozen=True):
     """What went wrong in a worker, as text: not every exception can travel."""
 
     message: str

@@ -5,10 +5,12 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
+
+from msgspec import Struct
 
 from voxrt.sources.source import open_source
 from voxrt.voxelize import AssetError, Scene
@@ -24,8 +26,7 @@ if TYPE_CHECKING:
 _MOST_FRAMES = 4096
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class FrameSources:
+class FrameSources(Struct, frozen=True, eq=False):
     """The opened assets of an animation."""
 
     name: str  # what the files of the build are called

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias, Union, cast
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from voxrt import voxelize
 from voxrt.sources.object_selection import named_camera, without_objects
@@ -24,8 +26,7 @@ Asset: TypeAlias = Union[
 """A file's path; a scene; vertices (V, 3) and faces (F, 3); a mesh or a scene of trimesh."""
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Source:
+class Source(Struct, frozen=True, eq=False):
     """An asset that is opened, and the options of its build.
 
     Examples

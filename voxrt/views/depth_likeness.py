@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from io import BytesIO
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
+from msgspec.structs import replace
 
 from voxrt import octree, sim, voxelize
 from voxrt.views.viewpoint import aim_camera
@@ -20,8 +21,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize import Scene
 
 
-@dataclass(frozen=True, slots=True)
-class LikenessAtDepth:
+class LikenessAtDepth(Struct, frozen=True):
     """A scene at one depth, as :func:`likeness_curve` finds it.
 
     Attributes

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt import sim
 from voxrt.export import Blob
@@ -34,8 +34,7 @@ if TYPE_CHECKING:
 _SAMPLES = 4  # rays per pixel of a preview, on each axis
 
 
-@dataclass(frozen=True, eq=False, slots=True, repr=False)
-class Picture:
+class Picture(Struct, frozen=True, eq=False):
     """A frame, the camera that saw it and the engine that rendered it. A notebook shows it.
 
     Attributes

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import os
 import subprocess
-from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.board.designs.build import RTL, SELFTESTS, list_sources, memories, parameters, top_of
 
@@ -27,8 +27,7 @@ _CHIPS = {"ecp5_top_sdram", "ecp5_selftest_sdram"}  # Tops whose pins need an SD
 _CHIP = (_HERE / "sdram_model.sv", _HERE / "sdram_board.sv")  # ... as here.
 
 
-@dataclass(frozen=True)
-class Timing:
+class Timing(Struct, frozen=True):
     """What a monitor measured of a frame, in pixel clocks and rows; least and most where it may differ by row."""
 
     pixels: int

@@ -1,9 +1,8 @@
 """Whose normals baked light takes: the author's where there are any, turned with the object."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
+from msgspec.structs import replace
 from oracles.meshes import icosphere
 
 from voxrt.sim.baking.bake import surface_triangles

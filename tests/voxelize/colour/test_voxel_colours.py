@@ -1,11 +1,10 @@
 """Colours voxel by voxel: against points on triangles found by brute force, and by cases whose answer is known."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from msgspec.structs import replace
 from oracles.meshes import box_mesh, icosphere, one_object
 from oracles.voxels import dense, flat_cover, snap, triangle_cover, voxel_colours
 

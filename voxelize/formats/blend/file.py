@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import bpy
+from msgspec.structs import replace
 
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.blend.rendered import as_rendered

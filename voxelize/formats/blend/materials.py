@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
+
+from msgspec import Struct
 
 from voxrt.voxelize.formats.authored_properties import PREFIX, MaterialProperties, checked_properties
 from voxrt.voxelize.formats.blend.nodes import Product, output_of, product, source, threshold
@@ -17,8 +18,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.warning_log import WarningLog
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class SurfaceMaterial:
+class SurfaceMaterial(Struct, frozen=True, eq=False):
     """What a material says about the surface that has it."""
 
     key: object  # equal for materials that become one

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.voxelize.corner_normals import CornerNormals
 from voxrt.voxelize.formats.blend.axes import turned_points
@@ -14,8 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class MeshArrays:
+class MeshArrays(Struct, frozen=True, eq=False):
     """The triangles of a mesh, those of one material slot after those of another, in the scene's axes."""
 
     positions: NDArray[np.float32]  # shape (V, 3)

@@ -6,11 +6,11 @@ node tree computes depends on the point, the view or a seed, and has no meaning 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import bpy
 import numpy as np
+from msgspec import Struct
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -21,8 +21,7 @@ Groups: TypeAlias = tuple[Any, ...]  # the group nodes around a node, the innerm
 _UV = np.eye(3)
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class ImageUse:
+class ImageUse(Struct, frozen=True, eq=False):
     """An image as a texture node shows it."""
 
     image: Any  # bpy.types.Image
@@ -32,8 +31,7 @@ class ImageUse:
     transform: NDArray[np.float64] | None = None  # float64, shape (3, 3), of (u, v, 1), v upwards; None for none
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Product:
+class Product(Struct, frozen=True, eq=False):
     """A product of a constant, an image and a colour attribute; `channel` is the one that a number is taken from."""
 
     factor: tuple[float, float, float] = (1.0, 1.0, 1.0)

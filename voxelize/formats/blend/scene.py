@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from msgspec import Struct
+from msgspec.structs import replace
 
 from voxrt.voxelize.collider_shapes import Collider, collider_around
 from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
@@ -75,8 +76,7 @@ def read_depsgraph(
     return SceneReader(named, path or name, opaque_from).scene(depsgraph, name)
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class _Placed:
+class _Placed(Struct, frozen=True, eq=False):
     """An object before its mesh has its materials."""
 
     name: str
@@ -86,8 +86,7 @@ class _Placed:
     collider: Collider | None
 
 
-@dataclass(frozen=True, slots=True)
-class _Instance:
+class _Instance(Struct, frozen=True):
     """An object that is no instance, in the place of a ``bpy.types.DepsgraphObjectInstance``."""
 
     object: Any

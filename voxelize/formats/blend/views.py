@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.voxelize.colour.srgb import srgb_from_linear
 from voxrt.voxelize.formats.blend.axes import placed_camera
@@ -18,8 +18,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.warning_log import WarningLog
 
 
-@dataclass(frozen=True, slots=True)
-class Daylight:
+class Daylight(Struct, frozen=True):
     """The sun and the sky, as the options of baked light and of pictures take them."""
 
     sun: tuple[float, float, float] | None = None  # the direction towards the first sun, scene frame; None for none

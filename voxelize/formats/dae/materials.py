@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from msgspec import Struct, field
 
 from voxrt.voxelize.colour.appearance import Appearance
 from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8
@@ -29,8 +29,7 @@ COLOURED = Appearance("vertex colours")
 """The appearance of vertex colours without a material."""
 
 
-@dataclass(frozen=True, slots=True)
-class Materials:
+class Materials(Struct, frozen=True):
     """Reads each material and each image once."""
 
     path: Path

@@ -5,10 +5,10 @@ Source: Khronos, glTF 2.0 specification, sections 3.6.2 (accessors) and 3.11 (no
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.voxelize.formats.gltf.schema import BYTE, FLOAT, SHORT, UNSIGNED_BYTE, UNSIGNED_INT, UNSIGNED_SHORT
 
@@ -40,8 +40,7 @@ _SHAPES: dict[ElementType, tuple[int, int]] = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Layout:
+class Layout(Struct, frozen=True):
     """The memory layout of one element. Columns of matrices start at multiples of 4 bytes."""
 
     dtype: np.dtype[Any]  # the type of its components, little-endian

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
 from voxrt.voxelize.formats.colour_range import CLAMPED, clamped
@@ -23,8 +23,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.formats.gltf.textures import Textures
 
 
-@dataclass(frozen=True, slots=True)
-class AppearanceKey:
+class AppearanceKey(Struct, frozen=True):
     """How a node shows a mesh. Nodes with equal keys and poses share one mesh."""
 
     mesh: int  # the mesh's index in the file
@@ -33,8 +32,7 @@ class AppearanceKey:
     variant: int | None = None  # the index of the material variant; None for the default materials of the primitives
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class SurfaceMaterials:
+class SurfaceMaterials(Struct, frozen=True, eq=False):
     """The materials of the triangles of a surface."""
 
     # Runs of triangles of one colour, as start, stop and material. The other triangles have an appearance, or

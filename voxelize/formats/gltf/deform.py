@@ -5,10 +5,10 @@ Source: Khronos, glTF 2.0 specification, sections 3.7.2.2 (morph targets) and 3.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.voxelize.formats.gltf.accessors import as_unit_floats, read_floats
 
@@ -20,8 +20,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.formats.gltf.schema import Primitive
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Pose:
+class Pose(Struct, frozen=True, eq=False):
     """The deformation of a mesh."""
 
     weights: tuple[float, ...] = ()  # the weight of each morph target

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from msgspec import Struct
 
 from voxrt.voxelize.colour.srgb import srgb_from_linear
 from voxrt.voxelize.formats.gltf.extensions import EMISSIVE_STRENGTH, SPECULAR_GLOSSINESS
@@ -22,16 +23,14 @@ NO_MATERIAL = -1
 """The index of the material of faces that have none."""
 
 
-@dataclass(frozen=True, slots=True, order=True)
-class MaterialKey:
+class MaterialKey(Struct, frozen=True, order=True):
     """One of the file's materials, or :data:`NO_MATERIAL`; `mirrored` where a node makes it a mirror."""
 
     index: int
     mirrored: bool = False
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class MaterialProperties:
+class MaterialProperties(Struct, frozen=True, eq=False):
     """The properties of a material that matter for voxels."""
 
     name: str

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.voxelize.corner_normals import CornerNormals
 from voxrt.voxelize.errors import AssetError
@@ -20,8 +20,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.formats.gltf.document import Document
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Span:
+class Span(Struct, frozen=True, eq=False):
     """The triangles of one primitive among those of its mesh."""
 
     primitive: int  # its index in the mesh
@@ -32,8 +31,7 @@ class Span:
     corners: NDArray[np.int32]  # int32, shape (stop - start, 3): rows of the primitive's own vertices
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Surface:
+class Surface(Struct, frozen=True, eq=False):
     """The triangles of a glTF mesh, in the order of its primitives."""
 
     positions: NDArray[np.floating]  # float32 or float64, shape (V, 3), finite; few are unused

@@ -5,10 +5,10 @@ Source: Khronos, glTF 2.0 specification, section 3.5.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.voxelize.formats.gltf.accessors import read_floats
 from voxrt.voxelize.formats.gltf.extensions import INSTANCING, VISIBILITY
@@ -22,8 +22,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.formats.gltf.document import Document
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Hierarchy:
+class Hierarchy(Struct, frozen=True, eq=False):
     """The transforms and the visible nodes of a file."""
 
     shown: tuple[int, ...]  # the visible nodes of the scene, parents before children, siblings in authored order

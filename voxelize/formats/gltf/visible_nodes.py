@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.voxelize.formats.gltf.appearance import AppearanceKey
 from voxrt.voxelize.formats.gltf.deform import Pose, joint_matrices
@@ -29,8 +29,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.rules import ObjectFill, Rule
 
 
-@dataclass(frozen=True, slots=True)
-class PoseKey:
+class PoseKey(Struct, frozen=True):
     """A pose of a mesh: its morph weights, and the node whose skin deforms it."""
 
     mesh: int
@@ -38,8 +37,7 @@ class PoseKey:
     skinned_by: int | None = None
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class NodeContent:
+class NodeContent(Struct, frozen=True, eq=False):
     """What a node adds to the scene: a mesh, or a collider without a mesh."""
 
     node: int  # the node's index in the file

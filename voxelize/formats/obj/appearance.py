@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct, field
 
 from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
 from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8
@@ -29,8 +29,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.warning_log import WarningLog
 
 
-@dataclass(eq=False, slots=True)
-class FaceAppearance:
+class FaceAppearance(Struct, eq=False):
     """The appearance of each face."""
 
     # uint8, shape (F,): material ids; 0 for faces that are left out, and for those with an appearance.

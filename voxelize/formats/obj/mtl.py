@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from msgspec import Struct
 
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.colour_range import clamped
@@ -44,8 +45,7 @@ _OPTIONS = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class MtlTexture:
+class MtlTexture(Struct, frozen=True):
     """The arguments of ``map_Kd`` or ``map_d``: a file name, the placement of the image, and whether it is clamped.
 
     Texture coordinates are multiplied by `scale`, then `offset` is added.
@@ -61,8 +61,7 @@ class MtlTexture:
         return self.scale, self.offset, self.clamp
 
 
-@dataclass(slots=True)
-class MtlMaterial:
+class MtlMaterial(Struct):
     """One material of a library."""
 
     name: str
@@ -97,8 +96,7 @@ def read_mtl(path: Path, log: WarningLog) -> dict[str, MtlMaterial]:
     return materials
 
 
-@dataclass(frozen=True, slots=True)
-class _Place:
+class _Place(Struct, frozen=True):
     path: Path
     line: str
     log: WarningLog

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.colour_range import clamped
@@ -32,8 +32,7 @@ _WITHOUT_EFFECT = frozenset(
 )
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Statements:
+class Statements(Struct, frozen=True, eq=False):
     """The file's content, faces in authored order."""
 
     positions: NDArray[np.float64]  # float64, shape (V, 3), in the file's frame; NaN where a number could not be read

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 import re
 import warnings
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.external_files import read_asset
@@ -27,8 +27,7 @@ _INDEX = re.compile(rb"[+-]?\d{1,18}")
 _MOST_MARKS = 3  # in a name that a comment may follow
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Text:
+class Text(Struct, frozen=True, eq=False):
     """A file's text with line feeds as line ends; continued lines are joined in place."""
 
     path: Path

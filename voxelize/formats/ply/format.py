@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.written_numbers import read_reals
@@ -37,22 +37,19 @@ _LONGEST_NUMBER = 64
 _ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 
 
-@dataclass(frozen=True, slots=True)
-class _Property:
+class _Property(Struct, frozen=True):
     name: str
     kind: str
     count_kind: str | None  # the type of a list's length; None for a plain value
 
 
-@dataclass(frozen=True, slots=True)
-class _Element:
+class _Element(Struct, frozen=True):
     name: str
     count: int
     properties: tuple[_Property, ...]
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class ListColumn:
+class ListColumn(Struct, frozen=True, eq=False):
     """A list property of all rows: their lengths, int64 (N,), and their values end to end."""
 
     counts: NDArray[np.int64]
@@ -63,8 +60,7 @@ Column: TypeAlias = "NDArray[np.float64] | NDArray[np.integer]"
 Table: TypeAlias = "dict[str, Column | ListColumn]"
 
 
-@dataclass(frozen=True, slots=True)
-class _Binary:
+class _Binary(Struct, frozen=True):
     """A binary file under reading."""
 
     path: Path
@@ -72,8 +68,7 @@ class _Binary:
     order: str
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class PlyFile:
+class PlyFile(Struct, frozen=True, eq=False):
     """The content of a file."""
 
     # Columns by property, by element, of the type that the header says. In ASCII files reals are float64, and whole

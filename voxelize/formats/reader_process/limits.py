@@ -15,9 +15,9 @@ from __future__ import annotations
 import os
 import resource
 import signal
-from dataclasses import dataclass
 
 import msgspec
+from msgspec import Struct
 
 from voxrt.voxelize.free_memory import free_memory
 
@@ -29,8 +29,7 @@ _SECONDS_PER_BYTE = 2e-6
 _DAYTIME_FACTOR = 4
 
 
-@dataclass(frozen=True, slots=True)
-class Limits:
+class Limits(Struct, frozen=True):
     """What a small file may take, and what no file may."""
 
     memory: int  # bytes that a small file may take

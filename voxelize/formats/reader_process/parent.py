@@ -13,11 +13,11 @@ import signal
 import subprocess
 import sys
 import tempfile
-from dataclasses import dataclass, field
 from typing import IO, TYPE_CHECKING
 
 import msgspec
 import numpy as np
+from msgspec import Struct, field
 
 from voxrt.voxelize.errors import AssetError, DoesNotFitError
 from voxrt.voxelize.formats.external_files import LFS_POINTER, refuse_pointer
@@ -48,8 +48,7 @@ _END_SECONDS = 5.0  # that a process may take to end when its message has ended
 _REPAIR = "it is damaged, or made to do harm: repair it or export it again"
 
 
-@dataclass(frozen=True, slots=True)
-class Reader:
+class Reader(Struct, frozen=True):
     """A program that reads files by a library: it is called with the file and the request, and prints a message."""
 
     library: str  # what errors call it

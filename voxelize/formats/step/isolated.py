@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
 
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.opacity import OPAQUE_FROM

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec.structs import replace
 
 from voxrt.voxelize.errors import DAMAGED, AssetError
 from voxrt.voxelize.formats.external_files import asset_name, read_asset

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from msgspec import Struct, field
 
 from voxrt.voxelize.errors import DAMAGED, AssetError
 from voxrt.voxelize.formats.scene_frame import FARTHEST, in_range
@@ -25,8 +25,7 @@ _NONE = -1
 _PAINTED = {"paint_color", "mmu_segmentation"}  # of triangles: by Bambu Studio and OrcaSlicer; by PrusaSlicer
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Placed:
+class Placed(Struct, frozen=True, eq=False):
     """An object of a part where a component or an item of the build puts it: float64, shape (4, 4)."""
 
     part: str
@@ -35,8 +34,7 @@ class Placed:
     name: str = ""
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class ModelObject:
+class ModelObject(Struct, frozen=True, eq=False):
     """An object: triangles or components.
 
     `groups` are the property groups that triangles name, by their numbers in the part; `properties`, int64, shape
@@ -53,8 +51,7 @@ class ModelObject:
     painted: int
 
 
-@dataclass(frozen=True, slots=True)
-class Group:
+class Group(Struct, frozen=True):
     """The colours of a property group: red, green, blue and opacity; None for one that cannot be read.
 
     `names`: of materials; None for mere colours.
@@ -64,8 +61,7 @@ class Group:
     names: list[str] | None = None
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Model:
+class Model(Struct, frozen=True, eq=False):
     """A model part: its unit, objects and property groups by their numbers, and what it builds."""
 
     unit: str = _DEFAULT_UNIT

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import io
 import zipfile
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
+
+from msgspec import Struct
 
 from voxrt.voxelize.errors import DAMAGED, AssetError
 from voxrt.voxelize.formats.xml_elements import xml_elements
@@ -22,8 +23,7 @@ _SETTINGS = ("metadata/model_settings.config", "metadata/slic3r_pe_model.config"
 _IS_ROOT = "/3dmodel"  # how the type of the relation to the root model ends
 
 
-@dataclass(frozen=True, slots=True)
-class Package:
+class Package(Struct, frozen=True):
     """The parts of a file by their names, as :func:`part_name` writes them; `root` is the one that is built."""
 
     path: Path

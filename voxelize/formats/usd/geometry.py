@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 from pxr import Usd, UsdGeom
 
 from voxrt.voxelize import primitive_meshes
@@ -46,8 +46,7 @@ _FUNCTIONS: dict[str, Callable[..., primitive_meshes.Surface]] = {
 }
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Surface:
+class Surface(Struct, frozen=True, eq=False):
     """Triangles of one prim."""
 
     positions: NDArray[np.float64]  # float64, shape (V, 3), finite, in the prim's frame

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct, field
 from pxr import Usd, UsdShade
 
 from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
@@ -29,8 +29,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.warning_log import WarningLog
 
 
-@dataclass(eq=False, slots=True)
-class Materials:
+class Materials(Struct, eq=False):
     """The materials of one stage; each is read once."""
 
     path: Path

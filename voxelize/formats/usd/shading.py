@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
+from msgspec import Struct
+from msgspec.structs import replace
 from pxr import Sdf, Usd, UsdShade
 
 from voxrt.voxelize.colour.srgb import srgb_from_linear
@@ -29,8 +30,7 @@ _CONTEXTS = ("", "mtlx", "mdl", "ri", "glslfx")
 _WRAPS: dict[str, Wrap] = {"repeat": "repeat", "mirror": "mirror", "clamp": "clamp", "black": "clamp"}
 
 
-@dataclass(frozen=True, slots=True)
-class ImageSource:
+class ImageSource(Struct, frozen=True):
     """A texture: its image and its placement on the surface."""
 
     file: str  # its path, there or not; empty for none
@@ -49,8 +49,7 @@ class ImageSource:
     point: tuple[float, float] | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Shading:
+class Shading(Struct, frozen=True):
     """The colour and opacity of faces."""
 
     name: str | None  # the author's name; None for faces without any colour
@@ -109,8 +108,7 @@ def display_srgb(colour: Linear) -> tuple[int, int, int]:
     return red, green, blue
 
 
-@dataclass(frozen=True, slots=True)
-class _Input:
+class _Input(Struct, frozen=True):
     """The source of a shader's input: a value, a texture, or a primvar."""
 
     value: Linear | None = None

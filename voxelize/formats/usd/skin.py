@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 from pxr import Usd, UsdGeom, UsdSkel, Vt
 
 if TYPE_CHECKING:
@@ -16,8 +16,7 @@ if TYPE_CHECKING:
 PREDICATE = Usd.TraverseInstanceProxies(Usd.PrimDefaultPredicate)
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Deformed:
+class Deformed(Struct, frozen=True, eq=False):
     """A mesh's points at one time: float64, shape (V, 3), in the frame of the prim `frame`."""
 
     positions: NDArray[np.float64]

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
+from msgspec import Struct
+from msgspec.structs import replace
 from pxr import Usd, UsdGeom, UsdPhysics
 
 from voxrt.voxelize.errors import AssetError, DoesNotFitError
@@ -47,8 +49,7 @@ _WITHOUT_SHAPE = frozenset(("", "Xform", "Scope", "Material", "Shader", "NodeGra
 _PROTOTYPE_PREDICATE = Usd.TraverseInstanceProxies(Usd.PrimIsActive & Usd.PrimIsLoaded)
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class _PlacedMesh:
+class _PlacedMesh(Struct, frozen=True, eq=False):
     """An object whose mesh, an index into the traversal's meshes, has no materials yet; None for a hidden object.
 
     `body` is the path of the rigid body that it is part of; empty for none. `rule` and `fill`: see

@@ -7,10 +7,10 @@ and 200. Chunks that do not affect the voxels' colours (cameras, notes, render s
 from __future__ import annotations
 
 import struct
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct, field
 
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.external_files import read_asset
@@ -27,16 +27,14 @@ _LONGEST_SIDE = 256
 Vector = tuple[int, int, int]
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class VoxModel:
+class VoxModel(Struct, frozen=True, eq=False):
     """One model: `size` in voxels, `voxels` uint8 of shape (N, 4), rows (x, y, z, colour index 1 … 255), z up."""
 
     size: Vector
     voxels: NDArray[np.uint8]
 
 
-@dataclass(frozen=True, slots=True)
-class Transform:
+class Transform(Struct, frozen=True):
     """A node that places its child: world = rows · child + offset, signed unit `rows`."""
 
     child: int
@@ -47,15 +45,13 @@ class Transform:
     frames: int
 
 
-@dataclass(frozen=True, slots=True)
-class Group:
+class Group(Struct, frozen=True):
     """A node that holds others."""
 
     children: tuple[int, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Shape:
+class Shape(Struct, frozen=True):
     """A node that shows models, one per frame of its animation."""
 
     models: tuple[int, ...]
@@ -71,8 +67,7 @@ def default_palette() -> NDArray[np.uint8]:
     return np.array(rows, dtype=np.uint8)
 
 
-@dataclass(slots=True)
-class VoxFile:
+class VoxFile(Struct):
     """The content of a file."""
 
     models: list[VoxModel] = field(default_factory=list)  # in the order of the file

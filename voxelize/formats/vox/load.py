@@ -6,11 +6,11 @@ MagicaVoxel's z is up; ours is y. Voxel (x, y, z) of the file goes to (x, z, -y)
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 from voxrt.voxelize.errors import AssetError, DoesNotFitError, SceneWarning
 from voxrt.voxelize.formats.vox.chunks import Group, Shape, Transform, read_chunks
@@ -28,15 +28,13 @@ _FIRST_FRAME = "only the first frame of what is animated is shown"
 _IDENTITY = np.eye(3, dtype=np.int64)
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class _Instance:
+class _Instance(Struct, frozen=True, eq=False):
     model: int
     rows: NDArray[np.int64]
     offset: NDArray[np.int64]
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class VoxScene:
+class VoxScene(Struct, frozen=True, eq=False):
     """The voxels of a MagicaVoxel file.
 
     Attributes

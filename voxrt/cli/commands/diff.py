@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from typing import TYPE_CHECKING
+
+from msgspec.structs import asdict
 
 import voxrt
 from voxrt.cli.inputs.source import Source, is_asset, read_source

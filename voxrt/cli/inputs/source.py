@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from msgspec import Struct
 
 import voxrt
 from voxrt.cli.terminal.messages import warn
@@ -23,8 +24,7 @@ if TYPE_CHECKING:
     from voxrt.octree import Rom
 
 
-@dataclass(frozen=True)
-class Source:
+class Source(Struct, frozen=True):
     """A memory and where it came from."""
 
     blob: Blob  # the memory, with the camera and the light that its file or its scene names

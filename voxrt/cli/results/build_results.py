@@ -6,10 +6,10 @@ Programs rely on the names of the fields: new ones may come, none changes.
 from __future__ import annotations
 
 import math
-from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 import msgspec
+from msgspec.structs import asdict
 
 from voxrt.cli.terminal.messages import name_file, print_answer
 from voxrt.export.provenance import BakedLight  # noqa: TC001 - msgspec resolves the annotations of this module

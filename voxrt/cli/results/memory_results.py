@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass, fields
 from typing import TYPE_CHECKING
 
 import msgspec
+from msgspec.structs import asdict
 
 import voxrt
 from voxrt.cli.results.build_results import CameraEntry, camera_entry
@@ -57,8 +57,7 @@ class WorldEntry(msgspec.Struct, frozen=True):
     """Metres."""
 
 
-@dataclass(frozen=True, slots=True)
-class InfoResult(RomInfo):
+class InfoResult(RomInfo, frozen=True):
     """``voxrt info --json``: what :class:`voxrt.export.RomInfo` holds, and where the voxels stand."""
 
     world: WorldEntry | None
@@ -201,7 +200,7 @@ def info_result(blob: Blob) -> InfoResult:
     rom = blob.rom
     facts = voxrt.rom_info(rom)
     return InfoResult(
-        **{one.name: getattr(facts, one.name) for one in fields(facts)},
+        **asdict(facts),
         world=None if rom.grid is None else WorldEntry(rom.grid.origin, rom.grid.voxel_size),
         mean_materials=None if rom.octree.means is None else int((rom.octree.means > 0).sum()),
         frames=None if blob.animation is None else blob.animation.frames,
