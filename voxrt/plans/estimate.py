@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from msgspec import Struct
 
+from voxrt.voxelize import _native
 from voxrt.voxelize.rules import RULES
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from voxrt.options.build_options import BuildOptions
     from voxrt.voxelize import Grid, Mesh, Scene, SceneObject
 
@@ -22,7 +21,6 @@ _SECONDS_PER_RULED_VOXEL = {"touch": 0.0, "centre": 80e-9, "half": 160e-9}
 _SECONDS_PER_BAKED_VOXEL_AND_SAMPLE = 40e-9
 _SECONDS_PER_HARDWARE_RAY = 6e-6
 _TRIANGLES_PER_POINT = 0.5  # a voxel of four triangles holds several points
-_MOST_AT_ONCE = 1 << 18  # triangles or vertices of copies
 _BYTES_AT_START = 60 << 20
 _BYTES_PER_TRIANGLE = 200
 _BYTES_PER_SURFACE_VOXEL = 8
@@ -81,16 +79,19 @@ def estimate_build(scene: Scene, grid: Grid, options: BuildOptions) -> BuildEsti
         elif len(item.mesh.triangles):
             shown.setdefault(id(item.mesh), (item.mesh, []))[1].append(item)
     for mesh, items in shown.values():
-        step = max(1, _MOST_AT_ONCE // max(len(mesh.triangles), len(mesh.positions)))
-        for begin in range(0, len(items), step):
-            some = items[begin : begin + step]
-            shadows, ends = _shadows(mesh, np.stack([one.transform for one in some]))
-            low, high = np.minimum(low, ends[0]), np.maximum(high, ends[1])
-            for item, shadow in zip(some, shadows.tolist(), strict=True):
-                voxels = 1.5 * shadow / grid.voxel_size / grid.voxel_size  # its square may overflow
-                surface += voxels
-                ruled[item.rule or options.rule] += voxels
-                coloured += voxels if mesh.appearance is not None else 0
+        areas, lowest, highest = _native.projected_areas(
+            (
+                np.ascontiguousarray(mesh.positions),
+                np.ascontiguousarray(mesh.triangles, np.int32),
+                np.stack([one.transform[:3] for one in items]),
+            )
+        )
+        low, high = np.minimum(low, lowest), np.maximum(high, highest)
+        for item, area in zip(items, areas, strict=True):
+            voxels = 1.5 * area / grid.voxel_size / grid.voxel_size  # its square may overflow
+            surface += voxels
+            ruled[item.rule or options.rule] += voxels
+            coloured += voxels if mesh.appearance is not None else 0
         triangles += len(items) * len(mesh.triangles)
     surface, coloured = (min(number, 8.0**grid.depth) for number in (surface, coloured))
     seconds = (
@@ -120,20 +121,3 @@ def hardware_seconds(size: tuple[int, int], samples: int = 1) -> float:
     True
     """
     return size[0] * size[1] * samples**2 * _SECONDS_PER_HARDWARE_RAY
-
-
-def _shadows(mesh: Mesh, transforms: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the areas of copies of a mesh, each triangle as seen along the axis that it faces most; and their ends.
-
-    `transforms`: shape (N, 4, 4). The areas have shape (N,); the lowest and the highest coordinates shape (2, 3).
-    """
-    points = transforms[:, :3, :3] @ mesh.positions.T.astype(np.float64)
-    # By axis: NumPy is slow along short rows.
-    corners = a, b, c = tuple(points.take(corner, axis=2) for corner in mesh.triangles.T)
-    placed = transforms[:, :3, 3]
-    lowest = np.min([(one.min(axis=2) + placed).min(axis=0) for one in corners], axis=0)
-    highest = np.max([(one.max(axis=2) + placed).max(axis=0) for one in corners], axis=0)
-    ab, ac = b - a, c - a
-    x, y, z = (np.abs(ab[:, i - 2] * ac[:, i - 1] - ab[:, i - 1] * ac[:, i - 2]) for i in range(3))
-    doubled: NDArray[np.float64] = np.maximum(np.maximum(x, y), z).sum(axis=1)
-    return doubled / 2, np.stack([lowest, highest])

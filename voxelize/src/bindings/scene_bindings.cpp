@@ -3,6 +3,7 @@
 #include "../scene/grid_fit.h"
 #include "../scene/material_table.h"
 #include "../scene/object_warnings.h"
+#include "../scene/projected_area.h"
 #include "../scene/used_vertices.h"
 #include "python.h"
 
@@ -37,17 +38,23 @@ void check(const InputOf<int32_t>& triangles, size_t vertices) {
         throw nb::value_error("triangles must have shape (T, 3)");
 }
 
+void check(const Cloud& cloud) {
+    const auto& [points, triangles, transforms] = cloud;
+    std::visit([&](const auto& positions) { check(triangles, positions.size() / 3); }, points);
+    if (transforms.size() % 12 != 0)
+        throw nb::value_error("transforms must have shape (N, 3, 4)");
+}
+
 std::tuple<Triple, Triple> scene_bounds(const std::vector<Cloud>& clouds, size_t hidden) {
     Bounds bounds;
     {
         const python::LongCall call;
-        for (const auto& [points, triangles, transforms] : clouds) {
-            if (transforms.size() % 12 != 0)
-                throw nb::value_error("transforms must have shape (N, 3, 4)");
+        for (const Cloud& cloud : clouds) {
+            check(cloud);
+            const auto& [points, triangles, transforms] = cloud;
             const std::span<const double> placed = span_of(transforms);
             std::visit(
                 [&](const auto& positions) {
-                    check(triangles, positions.size() / 3);
                     std::vector<uint8_t> used;
                     if (triangles.size() > 0)
                         used = spanning_vertices(span_of(triangles), span_of(positions));
@@ -59,6 +66,25 @@ std::tuple<Triple, Triple> scene_bounds(const std::vector<Cloud>& clouds, size_t
         bounds.check(hidden);
     }
     return {bounds.low(), bounds.high()};
+}
+
+std::tuple<std::vector<double>, Triple, Triple> projected_areas(const Cloud& cloud) {
+    const auto& [points, triangles, transforms] = cloud;
+    std::vector<double> areas(transforms.size() / 12);
+    Bounds bounds;
+    const python::LongCall call;
+    check(cloud);
+    std::visit(
+        [&](const auto& positions) {
+            const std::vector<uint8_t> used = used_vertices(span_of(triangles), positions.size() / 3);
+            for (size_t i = 0; i < areas.size(); ++i) {
+                const auto transform = span_of(transforms).subspan(12 * i).template first<12>();
+                areas[i] = projected_area(span_of(positions), span_of(triangles), transform);
+                bounds.add(span_of(positions), used, transform);
+            }
+        },
+        points);
+    return {std::move(areas), bounds.low(), bounds.high()};
 }
 
 std::tuple<Triple, double> fit(const Triple& low, const Triple& high, unsigned depth) {
@@ -122,6 +148,10 @@ void bind_scene(nb::module_& m) {
         "The lowest and the highest corner of point clouds, metres: positions (V, 3) float64 or float32; triangles\n"
         "(T, 3) int32, whose vertices count, or none, where all do; transforms (N, 3, 4) float64 to the scene frame.\n"
         "UnfitSceneError: no point, or a coordinate that is not finite; `hidden` objects are named then.");
+    m.def(
+        "projected_areas", &projected_areas, nb::arg("cloud"),
+        "The area of each copy of a mesh, and the lowest and the highest corner of all, metres. A triangle counts as\n"
+        "seen along the axis that it faces most. `cloud`: as of scene_bounds(), with triangles.");
     m.def("fit_grid", &fit, nb::arg("low"), nb::arg("high"), nb::arg("depth"),
           "Origin and voxel size of the smallest grid of a depth that holds a box. UnfitSceneError: it overflows.");
     m.def("longest_side", &longest_side, nb::arg("low"), nb::arg("high"),
