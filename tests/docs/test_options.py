@@ -5,10 +5,10 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
-from dataclasses import MISSING
 from pathlib import Path
 
 import pytest
+from msgspec import NODEFAULT
 
 from voxrt.cli.line.command_line import command_options, flags_of, read_options
 from voxrt.cli.line.completion_script import completion_script
@@ -58,7 +58,7 @@ def test_the_help_of_build_has_groups_on_one_screen(monkeypatch):
 
 @pytest.mark.parametrize(("_command", "name", "option"), OPTIONS)
 def test_a_default_can_be_written_and_read(_command, name, option):
-    if option.default in (MISSING, None, ()) or option.kind.is_flag or option.kind.is_optional:
+    if option.default in (NODEFAULT, None, ()) or option.kind.is_flag or option.kind.is_optional:
         return
     text = option.kind.write(option.default)
     assert option.kind.check(name, option.kind.read(text)) == option.default

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -92,7 +91,7 @@ def _finished(result: BuildResult, options: BuildOptions, clock: StageClock, lab
 def _lossless_depth(loaded: Scene, options: BuildOptions, depth: int, words: int) -> tuple[int, int] | None:
     """Find the greatest lesser depth at which a scene fits so many words, and its words there; None if none does."""
     for lesser in range(depth - 1, 0, -1):
-        whole = dataclasses.replace(options, depth=lesser, voxel_size=None, budget=None, allow_empty=True)
+        whole = replace(options, depth=lesser, voxel_size=None, budget=None, allow_empty=True)
         clock, run, name = StageClock(None), partial(run_here, options=whole), as_text(loaded.name)
         plan = fit_plan(loaded, whole, clock, on_disk=False)
         size = len(make_memory(loaded, plan, whole, clock, run, name=name, label=name).octree.words)

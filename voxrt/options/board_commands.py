@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import MISSING, dataclass
 from pathlib import Path
 from typing import Literal
 
+from msgspec import NODEFAULT
+
 from voxrt.options.kinds import FLAG, INTEGER, file, files, one_of, text, texts, whole
-from voxrt.options.option import ARGUMENTS, Option, nested, option
+from voxrt.options.option import ARGUMENTS, Option, OptionTable, nested, option
 from voxrt.options.shared import CONFIG, DEPTH, HARDWARE, OUTPUT, MessageOptions, ReportOptions
 
 _NETWORK, _DEVICE = "Network", "Device"
@@ -16,8 +17,7 @@ _PORT = Option(whole(0, 65535, "PORT"), None, _NETWORK, "")
 
 # A table: an option is its kind, its default and its group, then its text.
 # fmt: off
-@dataclass(frozen=True, kw_only=True)
-class ServeCommand:
+class ServeCommand(OptionTable, frozen=True, kw_only=True):
     """What ``voxrt serve`` takes."""
 
     scenes: tuple[Path, ...] = option(files("SCENE"), (), ARGUMENTS,
@@ -46,11 +46,10 @@ class ServeCommand:
     reporting: ReportOptions = nested(ReportOptions)
 
 
-@dataclass(frozen=True, kw_only=True)
-class UploadCommand:
+class UploadCommand(OptionTable, frozen=True, kw_only=True):
     """What ``voxrt upload`` takes."""
 
-    rom: Path = option(file("ROM"), MISSING, ARGUMENTS,
+    rom: Path = option(file("ROM"), NODEFAULT, ARGUMENTS,
         "A blob, or a .mem file; its manifest, the .json in the same folder, is sent with it. Or -: a file per line of "
         "standard input, each shown as its line comes; the line of a board stays open until the end.")
     to: str | None = option(text("URL"), None, _DEVICE,
@@ -65,13 +64,12 @@ class UploadCommand:
     reporting: ReportOptions = nested(ReportOptions)
 
 
-@dataclass(frozen=True, kw_only=True)
-class BitstreamCommand:
+class BitstreamCommand(OptionTable, frozen=True, kw_only=True):
     """What ``voxrt bitstream`` takes."""
 
     source: Path | None = option(file("ASSET|ROM"), None, ARGUMENTS,
         "An asset, or a memory: .mem or another format, with its manifest beside it. Leave it out with {selftest}.")
-    board: str = option(text("NAME"), MISSING, HARDWARE,
+    board: str = option(text("NAME"), NODEFAULT, HARDWARE,
         "Name of the board, such as ulx3s-85f. Or the path of a board.json, which describes a board of yours.")
     output: Path = option(file("DIR|FILE"), Path(), OUTPUT,
         "Folder for the files, which is made if it is missing. Or the file of the bitstream: NAME.bit or .fs.",
@@ -87,14 +85,13 @@ class BitstreamCommand:
     reporting: ReportOptions = nested(ReportOptions)
 
 
-@dataclass(frozen=True, kw_only=True)
-class BoardCommand:
+class BoardCommand(OptionTable, frozen=True, kw_only=True):
     """What ``voxrt board`` takes."""
 
-    action: Literal["check", "report"] = option(one_of(("check", "report")), MISSING, ARGUMENTS,
+    action: Literal["check", "report"] = option(one_of(("check", "report")), NODEFAULT, ARGUMENTS,
         "check: read the results of the self-test that runs on the board, and say what to do. report: print what to "
         "paste into an issue.")
-    device: str = option(text("serial:PORT|tcp://BOARD:PORT"), MISSING, ARGUMENTS,
+    device: str = option(text("serial:PORT|tcp://BOARD:PORT"), NODEFAULT, ARGUMENTS,
         "The board: a serial line, such as serial:/dev/ttyUSB0; for report also a PYNQ board that runs voxrt-board, "
         "such as tcp://pynq:4810, with its token in the environment variable VOXRT_BOARD_TOKEN.")
     views: int = option(whole(1, 128), 8, HARDWARE,
@@ -102,8 +99,7 @@ class BoardCommand:
     reporting: ReportOptions = nested(ReportOptions)
 
 
-@dataclass(frozen=True, kw_only=True)
-class CoreCommand:
+class CoreCommand(OptionTable, frozen=True, kw_only=True):
     """What ``voxrt core`` takes."""
 
     path: bool = option(FLAG, False, HARDWARE,

@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import MISSING, dataclass
 from pathlib import Path
+
+from msgspec import NODEFAULT
 
 from voxrt.options import notations
 from voxrt.options.build_options import CONTENT, PREVIEW, BuildOptions
 from voxrt.options.kinds import FLAG, file, files
 from voxrt.options.notations import FrameChoice
-from voxrt.options.option import ARGUMENTS, nested, option
+from voxrt.options.option import ARGUMENTS, OptionTable, nested, option
 from voxrt.options.shared import MEMORY, OUTPUT, RUNNING, ReportOptions
 
 
 # A table: an option is its kind, its default and its group, then its text.
 # fmt: off
-@dataclass(frozen=True, kw_only=True)
-class BuildCommand:
+class BuildCommand(OptionTable, frozen=True, kw_only=True):
     """What ``voxrt build`` takes."""
 
-    assets: tuple[Path, ...] = option(files("ASSET"), MISSING, ARGUMENTS,
+    assets: tuple[Path, ...] = option(files("ASSET"), NODEFAULT, ARGUMENTS,
         "A glTF (.gltf, .glb), OBJ, USD (.usd, .usda, .usdc, .usdz), STL or PLY file, or a scene of such files "
         "(.toml).")
     output: Path = option(file("DIR|FILE"), Path(), OUTPUT,

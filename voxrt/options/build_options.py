@@ -7,13 +7,12 @@ this module imports no heavy library.
 from __future__ import annotations
 
 from collections.abc import Sequence  # type hints are read at run time
-from dataclasses import dataclass
 from os import PathLike
 from typing import Literal, TypeAlias, get_args
 
 from voxrt.options import notations
 from voxrt.options.kinds import FLAG, one_of, real, text, texts, whole
-from voxrt.options.option import OptionConflictError, check_options, documented, option
+from voxrt.options.option import OptionConflictError, OptionTable, check_options, documented, option
 from voxrt.options.shared import (
     ALLOW_OUTSIDE,
     BACKGROUND,
@@ -45,8 +44,7 @@ GRID, CONTENT, COLOUR, PREVIEW = "Grid", "What is voxelized", "Colours and light
 # A table: an option is its kind, its default and its group, then its text.
 # fmt: off
 @documented
-@dataclass(frozen=True, kw_only=True)
-class BuildOptions:
+class BuildOptions(OptionTable, frozen=True, kw_only=True):
     """How an asset is built.
 
     Raises
@@ -182,6 +180,7 @@ class BuildOptions:
     workers: int | None = WORKERS.field(help="Build by so many processes of this machine, 1 to 1024.", is_rare=True)
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         if self.scheduler is not None and self.workers is not None:
             raise OptionConflictError("{scheduler} and {workers} exclude each other; give one of them")
         if self.depth is not None and self.voxel_size is not None:

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from importlib import import_module
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from voxrt.options.option import OptionTable
 
 
 class Command(NamedTuple):
@@ -14,10 +17,10 @@ class Command(NamedTuple):
     example: str  # a command line
     more: str = ""  # what the help says besides
 
-    def options(self) -> type[Any]:
-        """Return the table of its options, a frozen dataclass."""
+    def options(self) -> type[OptionTable]:
+        """Return the table of its options."""
         module, _, name = self.table.partition(":")
-        found: type[Any] = getattr(import_module(f"voxrt.options.{module}"), name)
+        found: type[OptionTable] = getattr(import_module(f"voxrt.options.{module}"), name)
         return found
 
 

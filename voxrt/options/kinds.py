@@ -7,18 +7,18 @@ A bound stands here once, or in the table that names it. :attr:`Kind.read` takes
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from importlib import import_module
 from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from msgspec import Struct
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
 
-@dataclass(frozen=True, eq=False)
-class Kind:
+class Kind(Struct, frozen=True, eq=False):
     """A kind of values.
 
     `read` returns the value that a text of the command line means; ValueError if it means none. `check` takes the name

@@ -2,26 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import MISSING, dataclass
 from pathlib import Path
 from typing import Literal
 
+from msgspec import NODEFAULT
+
 from voxrt.options.kinds import INTEGER, file, one_of, texts, whole
-from voxrt.options.option import ARGUMENTS, nested, option
+from voxrt.options.option import ARGUMENTS, OptionTable, nested, option
 from voxrt.options.shared import CONFIG, DEPTH, DIALECT, HARDWARE, MEMORY, OUTPUT, SCENE, SIZE, Dialect, ReportOptions
 
 
 # A table: an option is its kind, its default and its group, then its text.
 # fmt: off
-@dataclass(frozen=True, kw_only=True)
-class ConvertCommand:
+class ConvertCommand(OptionTable, frozen=True, kw_only=True):
     """What ``voxrt convert`` takes."""
 
-    source: Path = option(file("FROM"), MISSING, ARGUMENTS,
+    source: Path = option(file("FROM"), NODEFAULT, ARGUMENTS,
         "A memory: .mem, .coe, .mif or .bin (with or without a manifest beside it), .blob, .vox "
         "(MagicaVoxel), or .txt (a node listing of the original's authoring script). Or an asset, which is built "
         "first.")
-    target: Path = option(file("TO"), MISSING, ARGUMENTS,
+    target: Path = option(file("TO"), NODEFAULT, ARGUMENTS,
         "The file to write. Whole memories: .mem, .coe, .mif or .bin, each with a manifest beside it, or .blob. "
         "For other programs: .vox (MagicaVoxel), .npz (NumPy), .ply, .glb (glTF), .vtu (ParaView, PyVista) or "
         ".html.")
@@ -43,15 +43,14 @@ class ConvertCommand:
     reporting: ReportOptions = nested(ReportOptions)
 
 
-@dataclass(frozen=True, kw_only=True)
-class EditCommand:
+class EditCommand(OptionTable, frozen=True, kw_only=True):
     """What ``voxrt edit`` takes."""
 
-    source: Path = option(file("ROM|ASSET"), MISSING, ARGUMENTS,
+    source: Path = option(file("ROM|ASSET"), NODEFAULT, ARGUMENTS,
         "A memory in any format, or an asset, which is built first.")
-    script: Path = option(file("EDITS.jsonl"), MISSING, OUTPUT,
+    script: Path = option(file("EDITS.jsonl"), NODEFAULT, OUTPUT,
         "The edits: a file with an operation per line, as JSON.")
-    output: Path = option(file("FILE"), MISSING, OUTPUT,
+    output: Path = option(file("FILE"), NODEFAULT, OUTPUT,
         "The file to write, in a format that voxrt convert writes. It may be the memory that is read.",
         flags=("--output", "-o"))
     depth: int | None = DEPTH.field()
@@ -62,11 +61,10 @@ class EditCommand:
     reporting: ReportOptions = nested(ReportOptions)
 
 
-@dataclass(frozen=True, kw_only=True)
-class InfoCommand:
+class InfoCommand(OptionTable, frozen=True, kw_only=True):
     """What ``voxrt info`` takes."""
 
-    scene: Path = SCENE.field(default=MISSING,
+    scene: Path = SCENE.field(default=NODEFAULT,
         help="A memory (.mem or another format), with its manifest beside it or without; or an asset, which is "
         "built first.")
     depth: int | None = DEPTH.field()
@@ -74,11 +72,10 @@ class InfoCommand:
     reporting: ReportOptions = nested(ReportOptions)
 
 
-@dataclass(frozen=True, kw_only=True)
-class DiffCommand:
+class DiffCommand(OptionTable, frozen=True, kw_only=True):
     """What ``voxrt diff`` takes."""
 
-    first: Path = option(file("FIRST"), MISSING, ARGUMENTS,
+    first: Path = option(file("FIRST"), NODEFAULT, ARGUMENTS,
         "A memory in any format, or an asset, which is built first.")
     second: Path | None = option(file("SECOND"), None, ARGUMENTS,
         "Another, of the same depth; left out, two frames of FIRST are compared.")

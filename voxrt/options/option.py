@@ -1,4 +1,4 @@
-"""What an option is. A frozen dataclass whose fields are made here is a table of options.
+"""What an option is. A table of options is a struct whose defaults are made here.
 
 From such a table come the value and its checks (:func:`check_options`), its documentation (:func:`documented`), and on
 the command line the parser, the help, the completion and the manual's page, all by :func:`options_of`. This module
@@ -8,30 +8,31 @@ imports no heavy library.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
+from msgspec import Struct
+from msgspec.structs import force_setattr, replace
+
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
     from voxrt.options.kinds import Kind
 
-_T = TypeVar("_T")
+_Table = TypeVar("_Table", bound="OptionTable")
 
 
 ARGUMENTS = "Arguments"
 """The heading of what stands on the command line without the name of an option."""
 
 
-@dataclass(frozen=True)
-class Option:
+class Option(Struct, frozen=True):
     """An option of the Python API, of a command, or of both.
 
     In `help` and `details`, ``{name}`` stands for another option, however that is spelled.
     """
 
     kind: Kind
-    default: Any  # MISSING if it must be given
+    default: Any  # NODEFAULT if it must be given
     group: str | None  # its heading in the help; None for an option of the Python API alone
     help: str  # what it does, in a sentence or two
     details: str = ""  # what else there is to say: the short help of a command leaves it out
@@ -42,15 +43,18 @@ class Option:
     is_rare: bool = False  # the short help of a command names it alone, without its text
     manifest: Literal["never", "always", "changed"] = "never"  # whether a manifest names it; changed: not the default
 
+    def __repr__(self) -> str:
+        """Return the default, which the signatures of tables show."""
+        return repr(self.default)
+
     @property
     def text(self) -> str:
         """What it does, with the details."""
         return f"{self.help} {self.details}".rstrip()
 
     def field(self, **changed: Any) -> Any:  # noqa: ANN401 - type checkers take the annotation of the field
-        """Make the field of a dataclass, with some of the option's attributes changed."""
-        option = replace(self, **changed)
-        return field(default=option.default, metadata={"option": option})
+        """Make the field of a table, with some of the option's attributes changed."""
+        return replace(self, **changed)
 
     def check(self, name: str, value: object) -> Any:  # noqa: ANN401
         """Convert a value exactly; TypeError or ValueError, which call the option `name`, if that is not possible."""
@@ -58,13 +62,22 @@ class Option:
 
 
 def option(kind: Kind, default: Any, group: str | None, text: str, **more: Any) -> Any:  # noqa: ANN401
-    """Make the field of a dataclass that is an option: the attributes of :class:`Option`."""
-    return Option(kind, default, group, text, **more).field()
+    """Make the field of a table that is an option: the attributes of :class:`Option`."""
+    return Option(kind, default, group, text, **more)
 
 
-def nested(table: Callable[[], object]) -> Any:  # noqa: ANN401
-    """Make the field of a dataclass that holds another table of options."""
-    return field(default_factory=table, metadata={"table": table})
+class OptionTable(Struct, frozen=True):
+    """A table of options by name. The fields of derived classes are keywords."""
+
+    def __post_init__(self) -> None:
+        for name, made in _fields(type(self)):
+            if getattr(self, name) is made:
+                force_setattr(self, name, made.default if isinstance(made, Option) else made())
+
+
+def nested(table: type[OptionTable]) -> Any:  # noqa: ANN401
+    """Make the field of a table that holds another table of options."""
+    return table
 
 
 class OptionConflictError(ValueError):
@@ -80,7 +93,7 @@ def spell_options(text: str, spell: Callable[[str], str]) -> str:
     return re.sub(r"\{(\w+)\}", lambda name: spell(name[1]), text)
 
 
-def options_of(table: type) -> dict[str, Option]:
+def options_of(table: type[OptionTable]) -> dict[str, Option]:
     """Return the options of a table by name, those of nested tables in their place.
 
     Examples
@@ -90,28 +103,28 @@ def options_of(table: type) -> dict[str, Option]:
     32
     """
     found: dict[str, Option] = {}
-    for one in fields(table):
-        found |= options_of(one.metadata["table"]) if "table" in one.metadata else {one.name: one.metadata["option"]}
+    for name, made in _fields(table):
+        found |= {name: made} if isinstance(made, Option) else options_of(made)
     return found
 
 
-def compose(table: type[_T], values: Mapping[str, object]) -> _T:
+def compose(table: type[_Table], values: Mapping[str, object]) -> _Table:
     """Make a table with these values of its options, and of those of nested tables."""
     found = {
-        one.name: compose(one.metadata["table"], values) if "table" in one.metadata else values[one.name]
-        for one in fields(table)  # type: ignore[arg-type]
-        if "table" in one.metadata or one.name in values
+        name: values[name] if isinstance(made, Option) else compose(made, values)
+        for name, made in _fields(table)
+        if name in values or not isinstance(made, Option)
     }
     return table(**found)
 
 
-def check_options(table: Any) -> None:  # noqa: ANN401 - any table
+def check_options(table: OptionTable) -> None:
     """Convert the options of a table exactly, in place; TypeError or ValueError if that is not possible."""
     for name, one in options_of(type(table)).items():
-        object.__setattr__(table, name, one.check(name, getattr(table, name)))
+        force_setattr(table, name, one.check(name, getattr(table, name)))
 
 
-def merge(function: str, table: type[_T], options: _T | None, keywords: Mapping[str, Any]) -> _T:
+def merge(function: str, table: type[_Table], options: _Table | None, keywords: Mapping[str, Any]) -> _Table:
     """Return a table of options, None for the defaults, with the keywords of a call; `function` is what was called.
 
     TypeError or ValueError if `options` are no such table, there is no option of such a name, or one is out of range.
@@ -128,15 +141,20 @@ def merge(function: str, table: type[_T], options: _T | None, keywords: Mapping[
     names = list(options_of(table))
     if unknown := sorted(set(keywords) - set(names)):
         raise TypeError(f"{function}() has no option {unknown[0]!r}; it has {', '.join(names)}")
-    return replace(merged, **keywords) if keywords else merged  # type: ignore[type-var]
+    return replace(merged, **keywords) if keywords else merged
 
 
-def documented(table: type[_T]) -> type[_T]:
+def documented(table: type[_Table]) -> type[_Table]:
     """Put the options of a table into its docstring, behind the first paragraph."""
     first, _, rest = (table.__doc__ or "").partition("\n\n")
     lines = [f"    {name}\n        {_python_text(one)}\n" for name, one in options_of(table).items()]
     table.__doc__ = f"{first}\n\n    Attributes\n    ----------\n{''.join(lines)}\n{rest}"
     return table
+
+
+def _fields(table: type[OptionTable]) -> Iterable[tuple[str, Option | type[OptionTable]]]:
+    """Return the names of a table's fields, and what made them. Every field has a default."""
+    return zip(table.__struct_fields__, table.__struct_defaults__, strict=True)
 
 
 def _python_text(one: Option) -> str:

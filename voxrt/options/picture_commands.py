@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import MISSING, dataclass
 from pathlib import Path
 from typing import Literal
 
+from msgspec import NODEFAULT
+
 from voxrt.options import notations
 from voxrt.options.kinds import FLAG, INTEGER, Kind, as_it_is, file, one_of, real, whole
-from voxrt.options.option import ARGUMENTS, nested, option
+from voxrt.options.option import ARGUMENTS, OptionTable, nested, option
 from voxrt.options.shared import (
     ALLOW_OUTSIDE,
     BACKGROUND,
@@ -38,11 +39,10 @@ _OCTANTS, _PATH, _DETAIL = "Octants", "A path of cameras", "Level of detail"
 
 # A table: an option is its kind, its default and its group, then its text.
 # fmt: off
-@dataclass(frozen=True, kw_only=True)
-class RenderCommand:
+class RenderCommand(OptionTable, frozen=True, kw_only=True):
     """What ``voxrt render`` takes."""
 
-    scene: Path = SCENE.field(default=MISSING,
+    scene: Path = SCENE.field(default=NODEFAULT,
         details="The manifest of a .mem, the .json beside it, states materials, depth and dialect.")
     output: Path | None = option(notations.PICTURES, None, OUTPUT,
         "The picture, a .png; or a .gif, .webp or .mp4 of all frames of an animation or of a turntable. The default is "
@@ -94,12 +94,11 @@ class RenderCommand:
     reporting: ReportOptions = nested(ReportOptions)
 
 
-@dataclass(frozen=True, kw_only=True)
-class CompareCommand:
+class CompareCommand(OptionTable, frozen=True, kw_only=True):
     """What ``voxrt compare`` takes."""
 
-    rom: Path = option(file("ROM"), MISSING, ARGUMENTS, "A .mem file with its manifest.")
-    asset: Path = option(file("ASSET"), MISSING, ARGUMENTS, "What it was built from.")
+    rom: Path = option(file("ROM"), NODEFAULT, ARGUMENTS, "A .mem file with its manifest.")
+    asset: Path = option(file("ASSET"), NODEFAULT, ARGUMENTS, "What it was built from.")
     output: Path | None = option(notations.PICTURE, None, OUTPUT,
         "A .png of pictures side by side: the meshes, the memory by the exact model and, with {check}, by the "
         "simulated hardware, and the difference.", flags=("--output", "-o"))
@@ -113,11 +112,10 @@ class CompareCommand:
     reporting: ReportOptions = nested(ReportOptions)
 
 
-@dataclass(frozen=True, kw_only=True)
-class ViewCommand:
+class ViewCommand(OptionTable, frozen=True, kw_only=True):
     """What ``voxrt view`` takes."""
 
-    scene: Path = SCENE.field(default=MISSING)
+    scene: Path = SCENE.field(default=NODEFAULT)
     other: Path | None = SCENE.field(help="A second memory or asset, shown beside the first and turned with it.")
     by: Literal["material", "level", "owner"] = option(one_of(("material", "level", "owner")), "material", _OCTANTS,
         "What the colours show. The owners of voxels, which are the objects of the scene, are known only for "
@@ -145,12 +143,11 @@ class ViewCommand:
     reporting: MessageOptions = nested(MessageOptions)
 
 
-@dataclass(frozen=True, kw_only=True)
-class TraceCommand:
+class TraceCommand(OptionTable, frozen=True, kw_only=True):
     """What ``voxrt trace`` takes."""
 
-    scene: Path = SCENE.field(default=MISSING)
-    pixel: tuple[int, int] = option(notations.PIXEL, MISSING, PICTURE,
+    scene: Path = SCENE.field(default=NODEFAULT)
+    pixel: tuple[int, int] = option(notations.PIXEL, NODEFAULT, PICTURE,
         "Column and row of the pixel in the picture of voxrt render, from the upper left.")
     size: tuple[int, int] = SIZE.field(help="Width and height of that picture in pixels.")
     wave: Path | None = option(notations.WAVE, None, OUTPUT,

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from voxrt.options.option import check_options, documented, option
+from msgspec.structs import asdict
+
+from voxrt.options.option import OptionTable, check_options, documented, option
 from voxrt.options.shared import ANYTHING, BACKGROUND, CONFIG, ENGINE, SAMPLES, SIZE, Engine
 
 if TYPE_CHECKING:
@@ -16,8 +17,7 @@ if TYPE_CHECKING:
 # A table: an option is its kind, its default and its group, then its text.
 # fmt: off
 @documented
-@dataclass(frozen=True, kw_only=True)
-class RenderOptions:
+class RenderOptions(OptionTable, frozen=True, kw_only=True):
     """How a picture is rendered.
 
     Raises
@@ -53,6 +53,7 @@ class RenderOptions:
         "the leaves. The memory is built with lod=True.")
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         check_options(self)
 
     @property
@@ -64,5 +65,5 @@ class RenderOptions:
         """Return what both engines take, as keywords of :func:`voxrt.sim.check`; `engine` is for one of them alone."""
         from voxrt.octree.camera import PLAIN_LIGHTING  # noqa: PLC0415 - NumPy comes with it
 
-        keywords = {name: value for name, value in vars(self).items() if name != "engine"}
+        keywords = {name: value for name, value in asdict(self).items() if name != "engine"}
         return {**keywords, "config": self.config or "tiny", "lighting": self.lighting or PLAIN_LIGHTING}

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal, TypeAlias, get_args
 
 from voxrt.options import notations
 from voxrt.options.kinds import FLAG, Kind, as_it_is, file, one_of, text, whole
-from voxrt.options.option import ARGUMENTS, Option, option
+from voxrt.options.option import ARGUMENTS, Option, OptionTable, option
 
 Engine: TypeAlias = Literal["rtl", "model"]
 Dialect: TypeAlias = Literal["report", "seed-rtl", "msb", "lod"]
@@ -43,8 +42,7 @@ ALLOW_OUTSIDE = Option(FLAG, False, RUNNING, "Also open files that the asset nam
 ANYTHING = Kind("", str, as_it_is)
 
 
-@dataclass(frozen=True, kw_only=True)
-class MessageOptions:
+class MessageOptions(OptionTable, frozen=True, kw_only=True):
     """How much a command says."""
 
     verbose: bool = option(FLAG, False, MESSAGES,
@@ -54,8 +52,7 @@ class MessageOptions:
     debug: bool = option(FLAG, False, MESSAGES, "Show the traceback of an error.", is_rare=True)
 
 
-@dataclass(frozen=True, kw_only=True)
-class ReportOptions(MessageOptions):
+class ReportOptions(MessageOptions, frozen=True, kw_only=True):
     """How a command prints its results."""
 
     json: bool = option(FLAG, False, MESSAGES, "Print the result as JSON on standard output.")

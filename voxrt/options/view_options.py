@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
 from voxrt.options import notations
 from voxrt.options.kinds import INTEGER, one_of
-from voxrt.options.option import option
+from voxrt.options.option import OptionTable, option
 from voxrt.options.shared import Triple
 
 CAMERA, LIGHT = "Camera", "Light and shading"
@@ -15,8 +14,7 @@ CAMERA, LIGHT = "Camera", "Light and shading"
 
 # A table: an option is its kind, its default and its group, then its text.
 # fmt: off
-@dataclass(frozen=True, kw_only=True)
-class CameraOptions:
+class CameraOptions(OptionTable, frozen=True, kw_only=True):
     """The camera. What is not given is chosen to show the whole scene."""
 
     position: Triple | None = option(notations.PLACE, None, CAMERA,
@@ -32,8 +30,7 @@ class CameraOptions:
         "Register: step of the direction from a pixel to the one above it. The default is upright.", is_rare=True)
 
 
-@dataclass(frozen=True, kw_only=True)
-class LightOptions:
+class LightOptions(OptionTable, frozen=True, kw_only=True):
     """The light of a picture. What is not given is that of the memory."""
 
     light: Triple | None = option(notations.PLACE, None, LIGHT,

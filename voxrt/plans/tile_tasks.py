@@ -7,13 +7,13 @@ and does one task at a time: the native stages use its threads.
 from __future__ import annotations
 
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 from threading import Lock
 from typing import TYPE_CHECKING
 
 import numpy as np
 from msgspec import Struct
+from msgspec.structs import replace
 
 from voxrt import octree, voxelize
 from voxrt.errors import ToolError

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from msgspec import Struct
+from msgspec.structs import asdict
 
 import voxrt
 from voxrt.cli.terminal.messages import warn
@@ -39,7 +40,7 @@ class Source(Struct, frozen=True):
     def camera(self, size: tuple[int, int], sight: CameraOptions | None = None) -> voxrt.Camera:
         """Give the camera of the scene's preview, or the one that is asked for."""
         if sight is not None and sight != CameraOptions():
-            return voxrt.aim_camera(self.rom, size, **vars(sight))
+            return voxrt.aim_camera(self.rom, size, **asdict(sight))
         if self.blob.view is not None:
             if self.scene is not None and self.scene.viewpoint and self.rom.grid:
                 return authored_camera(self.scene.viewpoint, self.rom.grid, size)

@@ -6,9 +6,10 @@ value is optional before an argument; each of them takes longer to import than t
 
 from __future__ import annotations
 
-from dataclasses import MISSING
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from msgspec import NODEFAULT
 
 from voxrt.cli.terminal.errors import UsageError
 from voxrt.options.commands import COMMANDS
@@ -77,7 +78,7 @@ def read_options(command: str, arguments: Sequence[str]) -> Any:  # noqa: ANN401
 
 def _has(name: str, option: Option, texts: dict[str, list[str]]) -> bool:
     """Tell whether an option is on the command line; refuse a command line without one that must be."""
-    if not texts[name] and option.default is MISSING:
+    if not texts[name] and option.default is NODEFAULT:
         flag = flags_of(name, option)[0]
         raise UsageError(
             f"{flag} is missing" + ("" if option.group == ARGUMENTS else f"; add {flag} {_metavar(option)}")

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import MISSING
 from shutil import get_terminal_size
 from textwrap import wrap
 from typing import TYPE_CHECKING
+
+from msgspec import NODEFAULT
 
 from voxrt.cli.line.command_line import HELP_FLAGS, command_options, flags_of
 from voxrt.options.commands import COMMANDS
@@ -86,7 +87,7 @@ def option_text(option: Option, options: dict[str, Option], *, full: bool = True
     """Return what an option does, and its default unless it is nothing."""
     text = option.text if full else option.help
     text = spell_options(text, lambda name: flags_of(name, options[name])[0] if name in options else name)
-    if option.group == ARGUMENTS or option.default in (None, False, (), MISSING) or "default" in text:
+    if option.group == ARGUMENTS or option.default in (None, False, (), NODEFAULT) or "default" in text:
         return text
     default = option.kind.write(option.default)
     return text if default == "." else f"{text} [default: {default}]"
@@ -98,8 +99,8 @@ def _usage(command: str, options: dict[str, Option]) -> str:
         flag, metavar = flags_of(name, option)[0], option.metavar or option.kind.metavar
         if option.group == ARGUMENTS:
             word = metavar + ("..." if option.kind.many else "")
-            words.append(word if option.default is MISSING else f"[{word}]")
-        elif option.default is MISSING:
+            words.append(word if option.default is NODEFAULT else f"[{word}]")
+        elif option.default is NODEFAULT:
             words.append(f"{flag} {metavar}")
     return " ".join(["Usage: voxrt", command, *words, "[OPTIONS]"])
 
