@@ -7,7 +7,6 @@ object's mesh collide as a box, a sphere, a hull or a mesh; `voxrt_rule` and `vo
 
 from __future__ import annotations
 
-import difflib
 from typing import TYPE_CHECKING, TypeVar, get_args, get_type_hints
 
 import msgspec
@@ -53,7 +52,9 @@ def checked_properties(
     """
     for key in authored:
         if key.startswith(PREFIX) and key not in kind.__struct_fields__:
-            nearest = difflib.get_close_matches(key, kind.__struct_fields__, n=1)
+            from difflib import get_close_matches  # noqa: PLC0415 - slow to import, and for what is wrong alone
+
+            nearest = get_close_matches(key, kind.__struct_fields__, n=1)
             fix = f"did you mean {nearest[0]}?" if nearest else f"use {', '.join(kind.__struct_fields__)}"
             raise error(f"{place}.{key}", "unknown property for voxrt", fix)
     try:

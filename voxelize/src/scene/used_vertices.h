@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -27,11 +28,14 @@ template <class Real> bool has_no_area(const Real* a, const Real* b, const Real*
         v[i] = double(c[i]) - double(a[i]);
         largest = std::max({largest, std::abs(u[i]), std::abs(v[i])});
     }
-    if (!(largest > 0))
+    if (!(largest > 0) || std::isinf(largest))
         return largest == 0;
+    // By a power of two, so that nothing is rounded, and without a division: it would take as long as all else.
+    const uint64_t exponent = std::bit_cast<uint64_t>(largest) >> 52;
+    const double scale = std::bit_cast<double>((exponent < 2045 ? 2045 - exponent : 1) << 52);
     for (int i = 0; i < 3; ++i) {
-        u[i] /= largest;
-        v[i] /= largest;
+        u[i] *= scale;
+        v[i] *= scale;
     }
     return u[1] * v[2] == u[2] * v[1] && u[2] * v[0] == u[0] * v[2] && u[0] * v[1] == u[1] * v[0];
 }
