@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 from msgspec import Struct
 
+from voxrt.voxelize import _native
 from voxrt.voxelize.object_proxies import proxies
 
 if TYPE_CHECKING:
@@ -25,13 +27,7 @@ voxels. Of a few triangles a stray one may be a larger share."""
 _BINS = 64
 
 _ENOUGH = 100_000
-"""Triangles that tell whether a scene is wide."""
-
-_FEW = 1 << 14
-"""Triangles that are looked at first. They suffice to show that most scenes are wide."""
-
-_LEAST = 0.3
-"""The share of their area that must lie close together; otherwise the scene is wide."""
+"""Triangles among which a bulk is sought."""
 
 _CHUNK = 1 << 18
 
@@ -72,12 +68,12 @@ def find_stray_parts(scene: Scene, geometry: Geometry) -> StrayParts | None:
     groups = _groups(shown)
     if sum(one.count for one in groups) < 2:
         return None
-    width = _width(groups)
-    if _is_wide(_some_corners(groups, _FEW), width):
-        return None
-    corners = _some_corners(groups, _ENOUGH)
+    areas, width = _native.areas_by_place([(one.positions, one.triangles, one.transforms) for one in groups], _BINS)
     for share, narrow in _BULKS:
-        ends = _bulk_ends(corners, width, share, narrow)
+        # The share of the surface between the quantiles of both ends is larger than this, whatever is rounded.
+        if not all(_may_be_narrow(axis, narrow, 2 * share - 1.001) for axis in areas):
+            continue
+        ends = _bulk_ends(_some_corners(groups), share)
         if ends is not None and (ends[1] - ends[0]).max() < width * narrow:
             found = _strays(shown, groups, *ends)
             if found is not None and found.share >= share and _width_of(found) < found.width * narrow:
@@ -89,13 +85,18 @@ def _width_of(found: StrayParts) -> float:
     return max(high - low for low, high in zip(found.low, found.high, strict=True))
 
 
-class _Group(Struct, frozen=True, eq=False):
+class _Group(Struct, frozen=True, eq=False, dict=True):
     """The objects that share a mesh. Its triangles are numbered object by object."""
 
-    points: NDArray[np.float64]  # shape (3, P), in the mesh's frame
+    positions: NDArray[np.floating]  # shape (P, 3), in the mesh's frame
     triangles: NDArray[np.int32]  # shape (T, 3)
-    transforms: NDArray[np.float64]  # shape (N, 4, 4)
+    transforms: NDArray[np.float64]  # shape (N, 3, 4)
     owners: NDArray[np.int64]  # shape (N,): which objects they are
+
+    @cached_property
+    def _axes(self) -> NDArray[np.float64]:
+        """The positions with shape (3, P): NumPy is slow along short rows."""
+        return np.ascontiguousarray(self.positions.T, np.float64)
 
     @property
     def count(self) -> int:
@@ -106,12 +107,9 @@ class _Group(Struct, frozen=True, eq=False):
         return np.arange(int(self.owners[0]) % step, self.count, step)
 
     def corners(self, numbers: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Return the corners of triangles in the scene frame: float64, shape (3 corners, 3 axes, T).
-
-        NumPy is slow along short rows, so triangles are along the last axis.
-        """
+        """Return the corners of triangles in the scene frame: float64, shape (3 corners, 3 axes, T)."""
         which, rows = np.divmod(numbers, len(self.triangles))
-        own = (self.points.take(corner, axis=1) for corner in self.triangles.take(rows, axis=0).T)
+        own = (self._axes.take(corner, axis=1) for corner in self.triangles.take(rows, axis=0).T)
         if len(self.owners) == 1:  # by einsum: the threads of `@` cost more than they gain
             turn, move = self.transforms[0, :3, :3], self.transforms[0, :3, 3, None]
             return np.stack([np.einsum("ij,jt->it", turn, one) + move for one in own])
@@ -138,9 +136,9 @@ def _groups(shown: list[SceneObject]) -> list[_Group]:
             owners.setdefault(id(item.mesh), []).append(index)
     return [
         _Group(
-            np.ascontiguousarray(mesh.positions.T, np.float64),
-            mesh.triangles,
-            np.stack([shown[i].transform for i in own]),
+            np.ascontiguousarray(mesh.positions),
+            np.ascontiguousarray(mesh.triangles, np.int32),
+            np.stack([shown[i].transform[:3] for i in own]),
             np.array(own, np.int64),
         )
         for own in owners.values()
@@ -148,21 +146,10 @@ def _groups(shown: list[SceneObject]) -> list[_Group]:
     ]
 
 
-def _some_corners(groups: list[_Group], number: int) -> NDArray[np.float64]:
-    """Return the corners of at least so many triangles, or of all."""
-    step = max(1, sum(one.count for one in groups) // number)
+def _some_corners(groups: list[_Group]) -> NDArray[np.float64]:
+    """Return the corners of many triangles, or of all."""
+    step = max(1, sum(one.count for one in groups) // _ENOUGH)
     return np.concatenate([one.corners(one.some(step)) for one in groups], axis=2)
-
-
-def _width(groups: list[_Group]) -> float:
-    """Return the longest side of a box that holds all vertices."""
-    low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    for one in groups:
-        ends = np.stack([one.points.min(axis=1), one.points.max(axis=1)])
-        corners = np.array([[ends[i & 1, 0], ends[i >> 1 & 1, 1], ends[i >> 2, 2]] for i in range(8)])
-        placed = corners @ one.transforms[:, :3, :3].transpose(0, 2, 1) + one.transforms[:, None, :3, 3]
-        low, high = np.minimum(low, placed.min(axis=(0, 1))), np.maximum(high, placed.max(axis=(0, 1)))
-    return float((high - low).max())
 
 
 def _areas(corners: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -172,32 +159,22 @@ def _areas(corners: NDArray[np.float64]) -> NDArray[np.float64]:
         return np.asarray(np.sqrt(sum(squares)) / 2)
 
 
-def _is_wide(corners: NDArray[np.float64], width: float) -> bool:
-    """Tell whether a few triangles suffice to see that the surface has no narrow bulk on some axis.
+def _may_be_narrow(areas: NDArray[np.float64], narrow: float, least: float) -> bool:
+    """Tell whether _bulk_ends may find a narrow bulk on an axis: without its room, half as wide as is narrow.
 
-    A large triangle among them counts for many, so that far less than the share of a bulk must lie together.
+    Such a bulk meets few of the bins. At least the share `least` must lie in so many beside each other.
     """
-    area = _areas(corners)
-    widest = max(narrow for _, narrow in _BULKS)
-    return bool(0 < area.sum() < np.inf) and not all(
-        _may_be_narrow(axis, area, width, widest, _LEAST) for axis in corners.mean(axis=0)
-    )
+    most = math.ceil(_BINS * narrow / 2) + 1
+    sums = np.append(0.0, np.cumsum(areas))
+    return bool(0 < sums[-1] < np.inf and (sums[most:] - sums[:-most]).max() >= least * sums[-1])
 
 
-def _bulk_ends(
-    corners: NDArray[np.float64], width: float, share: float, narrow: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
-    """Return the ends of where the middles of a share of the surface are, with some room.
-
-    None for no surface, and where they are certainly too wide for a scene of this width.
-    """
+def _bulk_ends(corners: NDArray[np.float64], share: float) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+    """Return the ends of where the middles of a share of the surface are, with some room. None for no surface."""
     area = _areas(corners)
     if not 0 < area.sum() < np.inf:
         return None
     middles = corners.mean(axis=0)
-    # The share of the surface between the quantiles of both ends is larger than this, whatever is rounded.
-    if not all(_may_be_narrow(axis, area, width, narrow, 2 * share - 1.001) for axis in middles):
-        return None
     order = np.argsort(middles, axis=1, kind="stable")
     sums = np.cumsum(area[order], axis=1) / area.sum()
     tail = 1 - share
@@ -206,20 +183,6 @@ def _bulk_ends(
     low, high = middles[axes, order[axes, first]], middles[axes, order[axes, last]]
     room = (high - low).max() / 2  # quantiles leave ends out
     return low - room, high + room
-
-
-def _may_be_narrow(
-    middles: NDArray[np.float64], area: NDArray[np.float64], width: float, narrow: float, least: float
-) -> bool:
-    """Tell whether _bulk_ends may find a narrow bulk on this axis: without its room, half as wide as is narrow.
-
-    The area is added up in bins, of which such a bulk meets few. At least the share `least` must lie in so many bins
-    beside each other. This is faster than sorting.
-    """
-    most = math.ceil(_BINS * narrow / 2) + 1
-    bins = ((middles - middles.min()) * (_BINS / width)).astype(np.int64)
-    sums = np.append(0.0, np.cumsum(np.bincount(bins, area, _BINS + most)))
-    return bool((sums[most:] - sums[:-most]).max() >= least * sums[-1])
 
 
 def _strays(

@@ -14,8 +14,6 @@ from voxrt.voxelize.formats.authored_properties import explain
 from voxrt.voxelize.formats.external_files import ALLOW_OUTSIDE, LFS_POINTER, ExternalFiles, refuse_pointer
 from voxrt.voxelize.formats.gltf.container import read_container
 from voxrt.voxelize.formats.gltf.extensions import MESHOPT
-from voxrt.voxelize.formats.gltf.meshopt import CompressedView, decode
-from voxrt.voxelize.formats.gltf.meshopt_attributes import BadStreamError
 from voxrt.voxelize.formats.opacity import OPAQUE_FROM
 from voxrt.voxelize.warning_log import WarningLog
 
@@ -85,14 +83,18 @@ class Document:
         if index in self._unpacked:
             return memoryview(self._unpacked[index])
         for name in MESHOPT:
-            compressed = self.extension(view, name, CompressedView, f"bufferViews[{index}]")
-            if compressed is not None:
-                here = f"bufferViews[{index}].extensions.{name}"
-                self._unpacked[index] = self._decompressed(compressed, view, here)
+            if name in view.extensions:
+                self._unpacked[index] = self._decompressed(view, name, f"bufferViews[{index}]")
                 return memoryview(self._unpacked[index])
         return self.buffer(view.buffer)[view.byte_offset : view.byte_offset + view.byte_length]
 
-    def _decompressed(self, compressed: CompressedView, view: BufferView, here: str) -> bytes:
+    def _decompressed(self, view: BufferView, name: str, place: str) -> bytes:
+        from voxrt.voxelize.formats.gltf.meshopt import CompressedView, decode  # noqa: PLC0415 - few files need it
+        from voxrt.voxelize.formats.gltf.meshopt_attributes import BadStreamError  # noqa: PLC0415
+
+        compressed = self.extension(view, name, CompressedView, place)
+        assert compressed is not None
+        here = f"{place}.extensions.{name}"
         size = compressed.count * compressed.byte_stride
         self.charge(size * 4, here)
         buffer = self.item(self.gltf.buffers, compressed.buffer, f"{here}.buffer", "buffer")

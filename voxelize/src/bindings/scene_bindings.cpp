@@ -1,5 +1,6 @@
 #include "scene_bindings.h"
 
+#include "../scene/area_by_place.h"
 #include "../scene/grid_fit.h"
 #include "../scene/material_table.h"
 #include "../scene/object_warnings.h"
@@ -68,23 +69,59 @@ std::tuple<Triple, Triple> scene_bounds(const std::vector<Cloud>& clouds, size_t
     return {bounds.low(), bounds.high()};
 }
 
-std::tuple<std::vector<double>, Triple, Triple> projected_areas(const Cloud& cloud) {
+/// Calls visit(positions, triangles, transform) for each copy of a mesh.
+template <class Visit> void each_copy(const Cloud& cloud, Visit&& visit) {
     const auto& [points, triangles, transforms] = cloud;
-    std::vector<double> areas(transforms.size() / 12);
+    for (size_t i = 0; i < transforms.size(); i += 12)
+        std::visit(
+            [&](const auto& positions) {
+                visit(span_of(positions), span_of(triangles), span_of(transforms).subspan(i).template first<12>());
+            },
+            points);
+}
+
+/// Adds the copies of a mesh to bounds: the vertices that its triangles use.
+void add_used(Bounds& bounds, const Cloud& cloud) {
+    const auto& [points, triangles, transforms] = cloud;
+    const size_t vertices = std::visit([](const auto& positions) { return positions.size() / 3; }, points);
+    const std::vector<uint8_t> used = used_vertices(span_of(triangles), vertices);
+    each_copy(cloud, [&](auto positions, auto, auto transform) { bounds.add(positions, used, transform); });
+}
+
+std::tuple<std::vector<double>, Triple, Triple> projected_areas(const Cloud& cloud) {
+    std::vector<double> areas;
     Bounds bounds;
     const python::LongCall call;
     check(cloud);
-    std::visit(
-        [&](const auto& positions) {
-            const std::vector<uint8_t> used = used_vertices(span_of(triangles), positions.size() / 3);
-            for (size_t i = 0; i < areas.size(); ++i) {
-                const auto transform = span_of(transforms).subspan(12 * i).template first<12>();
-                areas[i] = projected_area(span_of(positions), span_of(triangles), transform);
-                bounds.add(span_of(positions), used, transform);
-            }
-        },
-        points);
+    add_used(bounds, cloud);
+    each_copy(cloud, [&](auto positions, auto triangles, auto transform) {
+        areas.push_back(projected_area(positions, triangles, transform));
+    });
     return {std::move(areas), bounds.low(), bounds.high()};
+}
+
+std::tuple<nb::object, double> areas_by_place(const std::vector<Cloud>& clouds, size_t bins) {
+    if (bins == 0)
+        throw nb::value_error("bins must be at least 1");
+    Bounds bounds;
+    std::vector<double> areas;
+    double width = 0;
+    {
+        const python::LongCall call;
+        for (const Cloud& cloud : clouds) {
+            check(cloud);
+            add_used(bounds, cloud);
+        }
+        for (size_t axis = 0; axis < 3; ++axis)
+            width = std::max(width, bounds.high()[axis] - bounds.low()[axis]);
+        AreaByPlace found(bounds.low(), width, bins);
+        for (const Cloud& cloud : clouds)
+            each_copy(cloud, [&](auto positions, auto triangles, auto transform) {
+                found.add(positions, triangles, transform);
+            });
+        areas = std::move(found.areas());
+    }
+    return {python::to_numpy(std::move(areas), {3, bins}), width};
 }
 
 std::tuple<Triple, double> fit(const Triple& low, const Triple& high, unsigned depth) {
@@ -152,6 +189,11 @@ void bind_scene(nb::module_& m) {
         "projected_areas", &projected_areas, nb::arg("cloud"),
         "The area of each copy of a mesh, and the lowest and the highest corner of all, metres. A triangle counts as\n"
         "seen along the axis that it faces most. `cloud`: as of scene_bounds(), with triangles.");
+    m.def(
+        "areas_by_place", &areas_by_place, nb::arg("clouds"), nb::arg("bins"),
+        "The area of triangles by where their middles lie along each axis, float64 of shape (3, bins), square metres;\n"
+        "and how wide all bins of an axis are, metres: the longest side. `clouds`: as of scene_bounds(), with\n"
+        "triangles.");
     m.def("fit_grid", &fit, nb::arg("low"), nb::arg("high"), nb::arg("depth"),
           "Origin and voxel size of the smallest grid of a depth that holds a box. UnfitSceneError: it overflows.");
     m.def("longest_side", &longest_side, nb::arg("low"), nb::arg("high"),
