@@ -2,7 +2,6 @@
 
 #include "../work/interrupt.h"
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <numeric>
@@ -36,27 +35,36 @@ struct Corner {
     uint32_t from, to;
 };
 
-/// Whether the faces at a vertex are one fan: from each, its last corner leads to the next one.
-bool is_fan(std::span<Corner> corners) {
-    constexpr size_t kFew = 16; // are searched one after another
-    const auto by_from = [](const Corner& a, const Corner& b) { return a.from < b.from; };
-    const bool is_sorted = corners.size() > kFew;
-    if (is_sorted) {
-        count_work(uint32_t(corners.size()));
-        std::sort(corners.begin(), corners.end(), by_from);
+/// Tells whether the faces at a vertex are one fan: from each, its last corner leads to the next one.
+class Fans {
+public:
+    explicit Fans(size_t vertices) : steps_(vertices, {kNone, kNone}) {}
+
+    /// `corners`: those of the faces at `vertex`, at least one.
+    bool is_fan(uint32_t vertex, std::span<const Corner> corners) {
+        for (const Corner& corner : corners) {
+            if (steps_[corner.from].vertex == vertex)
+                return false; // two faces leave by one edge
+            steps_[corner.from] = {vertex, corner.to};
+        }
+        uint32_t at = corners[0].from;
+        for (size_t length = 1; length <= corners.size(); ++length) {
+            if (steps_[at].vertex != vertex)
+                return false;
+            at = steps_[at].to;
+            if (at == corners[0].from)
+                return length == corners.size();
+        }
+        return false;
     }
-    size_t length = 0;
-    uint32_t at = corners[0].from;
-    do {
-        const auto next =
-            is_sorted ? std::lower_bound(corners.begin(), corners.end(), Corner{at, 0}, by_from)
-                      : std::find_if(corners.begin(), corners.end(), [at](const Corner& c) { return c.from == at; });
-        if (next == corners.end() || next->from != at || ++length > corners.size())
-            return false;
-        at = next->to;
-    } while (at != corners[0].from);
-    return length == corners.size();
-}
+
+private:
+    struct Step {
+        uint32_t vertex; // about which it was taken last
+        uint32_t to;
+    };
+    std::vector<Step> steps_; // by the vertex that they begin at
+};
 
 } // namespace
 
@@ -72,21 +80,21 @@ bool is_manifold(const MeshView& mesh, const std::vector<uint64_t>& vertex_keys)
         }
         count_work(2 * uint32_t(mesh.triangle_count()));
     };
-    std::vector<size_t> starts(first.size() + 1, 0);
+    std::vector<size_t> ends(first.size() + 1, 0); // of the corners of each vertex; starts, once they are filled in
     each_face([&](const std::array<uint32_t, 3>& c) {
         for (const uint32_t v : c)
-            ++starts[v + 1];
+            ++ends[v];
     });
-    std::partial_sum(starts.begin(), starts.end(), starts.begin());
-    std::vector<Corner> corners(starts.back());
-    std::vector<size_t> next(starts.begin(), starts.end() - 1);
+    std::partial_sum(ends.begin(), ends.end(), ends.begin());
+    std::vector<Corner> corners(ends.back());
     each_face([&](const std::array<uint32_t, 3>& c) {
         for (size_t i = 0; i < 3; ++i)
-            corners[next[c[i]]++] = {c[(i + 1) % 3], c[(i + 2) % 3]};
+            corners[--ends[c[i]]] = {c[(i + 1) % 3], c[(i + 2) % 3]};
     });
+    Fans fans(first.size());
     for (size_t v = 0; v < first.size(); ++v)
-        if (const size_t count = starts[v + 1] - starts[v];
-            count > 0 && !is_fan(std::span(corners).subspan(starts[v], count)))
+        if (const size_t count = ends[v + 1] - ends[v];
+            count > 0 && !fans.is_fan(uint32_t(v), std::span(corners).subspan(ends[v], count)))
             return false;
     return true;
 }

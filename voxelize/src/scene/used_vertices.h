@@ -47,12 +47,12 @@ std::vector<uint8_t> spanning_vertices(std::span<const int32_t> triangles, std::
     std::vector<uint8_t> used(positions.size() / 3, 0);
     bool any = false;
     const auto corner = [&](size_t i) { return positions.data() + 3 * static_cast<size_t>(triangles[i]); };
-    for (size_t i = 0; i + 2 < triangles.size(); i += 3)
-        if (!has_no_area(corner(i), corner(i + 1), corner(i + 2))) {
-            any = true;
-            for (size_t j = i; j < i + 3; ++j)
-                used[static_cast<size_t>(triangles[j])] = 1;
-        }
+    for (size_t i = 0; i + 2 < triangles.size(); i += 3) {
+        uint8_t* const of[3] = {&used[static_cast<size_t>(triangles[i])], &used[static_cast<size_t>(triangles[i + 1])],
+                                &used[static_cast<size_t>(triangles[i + 2])]};
+        if ((*of[0] & *of[1] & *of[2]) == 0 && !has_no_area(corner(i), corner(i + 1), corner(i + 2)))
+            any = *of[0] = *of[1] = *of[2] = 1;
+    }
     return any ? used : used_vertices(triangles, used.size());
 }
 
