@@ -1,14 +1,18 @@
 """Programs that turn a file into a file of voxels, side by side: whole processes, in turns, on a scan as GLB.
 
-Usage: ``python bench/peer_files.py [--runs N] [--write]``. The skull by voxrt, and by voxquant and MeshLib where
-``python bench/acid.py`` has installed them. Wants the assets (CONTRIBUTING.md) and a machine that does nothing else.
-Figures are medians of runs in turns; a run of more time or memory than allowed is named so. ``--write`` writes
-``bench/results/peer_files.md``.
+Usage: ``python bench/peer_files.py [--python PATH]... [--runs N] [--write]``. The skull by voxrt, and by voxquant and
+MeshLib where ``python bench/acid.py`` has installed them. voxrt runs as its users have it: in an environment that has
+nothing else, of this interpreter or of each that is named. Half of a short run is the start of Python, and interpreters
+that were compiled without profiles start slower. Wants the assets (CONTRIBUTING.md), the wheel in ``build/wheel``, and
+a machine that does nothing else. Figures are medians of runs in turns; a run of more time or memory than allowed is
+named so. ``--write`` writes ``bench/results/peer_files.md``.
 """
 
 from __future__ import annotations
 
 import importlib.util
+import os
+import platform
 import shutil
 import statistics
 import subprocess
@@ -18,7 +22,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from peer_process import Ended, run_confined
-from report import ROOT, machine, options_of, publish, table
+from report import ROOT, options_of, publish, table
 
 from voxelize import SKULL
 
@@ -33,10 +37,24 @@ DEPTHS = (8, 9, 10, 11, 12)
 EXPORT = "import sys, trimesh; m = trimesh.load(sys.argv[1], process=False); m.export(sys.argv[2]); print(len(m.faces))"
 
 
-def programs() -> tuple[dict[str, tuple[str, list[str | Path]]], list[str]]:
+def plain_environment(python: Path, folder: Path) -> tuple[str, Path]:
+    """Make an environment of an interpreter with voxrt and what it needs; return its version and its voxrt-build."""
+    subprocess.run([python, "-m", "venv", "--without-pip", folder], check=True)
+    own = folder / "bin" / "python"
+    wheels = [*(ROOT / "build" / "wheel").glob("*.whl")]
+    subprocess.run([sys.executable, "-m", "pip", "--python", own, "install", "--quiet", *wheels], check=True)
+    version = "import platform; print(platform.python_version())"
+    asked = subprocess.run([own, "-c", version], check=True, capture_output=True, text=True)
+    return asked.stdout.strip(), own.with_name("voxrt-build")
+
+
+def programs(pythons: list[Path], folder: Path) -> tuple[dict[str, tuple[str, list[str | Path]]], list[str]]:
     """Return what each program makes, and its command: FILE, DEPTH, SIDE and OUT stand for these; and who is absent."""
-    builder = Path(sys.executable).with_name("voxrt-build")
-    found = {"voxrt": ("solid, materials, shared octree", [builder, "FILE", "-q", "-o", "OUT", "--depth", "DEPTH"])}
+    found: dict[str, tuple[str, list[str | Path]]] = {}
+    for number, python in enumerate(pythons):
+        version, builder = plain_environment(python, folder / f"python{number}")
+        command = [builder, "FILE", "-q", "-o", "OUT", "--depth", "DEPTH"]
+        found[f"voxrt, Python {version}"] = "solid, materials, shared octree", command
     voxquant = shutil.which("voxquant", path=ENVIRONMENT) or shutil.which("voxquant")
     if voxquant:
         found["voxquant"] = ("surface", [voxquant, "-i", "FILE", "-o", "OUT.vox", "--res", "SIDE"])
@@ -48,7 +66,7 @@ def programs() -> tuple[dict[str, tuple[str, list[str | Path]]], list[str]]:
 
 def race(folder: Path, options: argparse.Namespace) -> str:
     """Return a page with the medians of each program at each depth."""
-    found, absent = programs()
+    found, absent = programs(options.python or [Path(sys.executable)], folder)
     for name in absent:
         print(f"{name} is left out: it is not here; python bench/acid.py installs it", file=sys.stderr)
     scan = folder / "scan.glb"
@@ -66,8 +84,9 @@ def race(folder: Path, options: argparse.Namespace) -> str:
     sides = [f"{2**depth}³" for depth in DEPTHS]
     rows = [(name, found[name][0], *cells[name]) for name in found]
     about = (
-        f"{machine()}. The skull, {int(exported.stdout):,} triangles as GLB: seconds of the whole process / peak "
-        f"memory, medians of {options.runs} in turns, at most {options.seconds:g} s and {options.gigabytes:g} GB a run."
+        f"{platform.machine()}, {os.cpu_count()} cores. The skull, {int(exported.stdout):,} triangles as GLB: seconds "
+        f"of the whole process / peak memory, medians of {options.runs} in turns, at most {options.seconds:g} s and "
+        f"{options.gigabytes:g} GB a run."
     )
     return f"# From a scan's file to voxels\n\n{about}\n\n{table(('program', 'makes', *sides), rows)}"
 
@@ -91,6 +110,7 @@ def cell(runs: list[Ended | str]) -> str:
 
 def main() -> None:
     parser = options_of(__doc__)
+    parser.add_argument("--python", type=Path, action="append", metavar="PATH")
     parser.add_argument("--runs", type=int, default=5)
     parser.add_argument("--seconds", type=float, default=90)
     parser.add_argument("--gigabytes", type=float, default=8)

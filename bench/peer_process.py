@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import os
 import resource
+import signal
 import subprocess
 import tempfile
+import threading
 import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -39,20 +41,20 @@ def run_confined(command: Sequence[str | Path], seconds: float, memory: int) -> 
 
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         start = time.perf_counter()
-        process = subprocess.Popen(command, stdout=out, stderr=err, env=USER_ENVIRONMENT, preexec_fn=confine)  # noqa: PLW1509 - no threads
-        while (ended := os.wait4(process.pid, os.WNOHANG))[0] == 0:
-            if time.perf_counter() - start > seconds:
-                process.kill()
-                os.wait4(process.pid, 0)
-                process.returncode = -1
-                return f"more than {seconds:g} s"
-            time.sleep(0.002)
+        process = subprocess.Popen(command, stdout=out, stderr=err, env=USER_ENVIRONMENT, preexec_fn=confine)  # noqa: PLW1509 - no threads yet
+        limit = threading.Timer(seconds, os.kill, (process.pid, signal.SIGKILL))
+        limit.start()
+        _, status, usage = os.wait4(process.pid, 0)
         wall = time.perf_counter() - start
-        process.returncode = os.waitstatus_to_exitcode(ended[1])
+        limit.cancel()
+        limit.join()
+        process.returncode = os.waitstatus_to_exitcode(status)
+        if wall > seconds:
+            return f"more than {seconds:g} s"
         for stream in (out, err):
             stream.seek(0)
         if process.returncode != 0:
             errors = err.read().decode("utf-8", "replace")
             died = process.returncode < 0 and "Error" not in errors
             return "out of memory" if died or any(word in errors for word in NO_MEMORY) else errors.splitlines()[-1]
-        return Ended(wall, ended[2].ru_maxrss / 1024, out.read().decode("utf-8", "replace"))
+        return Ended(wall, usage.ru_maxrss / 1024, out.read().decode("utf-8", "replace"))
