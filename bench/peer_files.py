@@ -44,8 +44,8 @@ def plain_environment(python: Path, folder: Path) -> tuple[str, Path]:
     wheels = [*(ROOT / "build" / "wheel").glob("*.whl")]
     subprocess.run([sys.executable, "-m", "pip", "--python", own, "install", "--quiet", *wheels], check=True)
     version = "import platform; print(platform.python_version())"
-    asked = subprocess.run([own, "-c", version], check=True, capture_output=True, text=True)
-    return asked.stdout.strip(), own.with_name("voxrt-build")
+    printed = subprocess.run([own, "-c", version], check=True, capture_output=True, text=True)
+    return printed.stdout.strip(), own.with_name("voxrt-build")
 
 
 def programs(pythons: list[Path], folder: Path) -> tuple[dict[str, tuple[str, list[str | Path]]], list[str]]:

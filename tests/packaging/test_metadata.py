@@ -58,8 +58,8 @@ def test_the_metadata_names_the_distribution_and_its_extras():
 def test_the_wheel_has_both_commands_and_the_reader():
     points = {(point.group, point.name): point.value for point in distribution(NAME).entry_points}
     assert points == {
-        ("console_scripts", "voxrt"): "voxrt.cli:main",
-        ("console_scripts", "voxrt-build"): "voxrt.cli:main_build",
+        ("console_scripts", "voxrt"): "voxrt.cli:script",
+        ("console_scripts", "voxrt-build"): "voxrt.cli:script_build",
         ("pyvista.readers", ".mem"): "voxrt.view.octant_files:read_octants",
     }
     for point in distribution(NAME).entry_points.select(group="console_scripts"):
