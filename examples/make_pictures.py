@@ -6,11 +6,11 @@ The picture of octants needs PyVista, those of the comparison need Open3D and ma
 from __future__ import annotations
 
 import runpy
+from dataclasses import replace
 from pathlib import Path
 
 import matplotlib as mpl
 from matplotlib import pyplot as plt
-from msgspec.structs import replace
 from PIL import Image
 
 import voxrt

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 import numpy as np
-from msgspec import Struct, field
+from msgspec import field
 from msgspec.structs import replace
 
 from voxrt.export.atomic import write_atomically
@@ -24,6 +24,7 @@ from voxrt.octree import Animation, AnimationFrame, Rom, RomError, census, check
 from voxrt.octree.camera import BOUNCE_LIMIT, FACES, Camera, Faces, Lighting
 from voxrt.octree.rom import MOST_NAME
 from voxrt.voxelize import Grid, Material
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from mmap import mmap
@@ -45,7 +46,7 @@ _MIRROR, _AUTHORED = 1, 2
 _LIGHT_ON, _FLAT, _BY_ANGLE = 1, 2, 4
 
 
-class Blob(Struct, frozen=True, eq=False):
+class Blob(Value, frozen=True, eq=False):
     """What a blob holds: a memory, and how it is to be seen.
 
     Attributes

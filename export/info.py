@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from msgspec import Struct
 
 from voxrt.octree import BOARDS, census, shared_words, solid_bounds
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from voxrt.octree import Rom
@@ -39,7 +40,7 @@ class BoardInfo(Struct, frozen=True):
     fits: bool
 
 
-class RomInfo(Struct, frozen=True):
+class RomInfo(Value, frozen=True):
     """The facts of a memory, as :func:`rom_info` returns them.
 
     Attributes

@@ -12,8 +12,6 @@ import errno
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from msgspec import Struct
-
 from voxrt.export.atomic import new_folder, staged_files, write_together
 from voxrt.export.blob import Blob
 from voxrt.export.manifest import make_manifest, manifest_bytes, read_manifest
@@ -24,6 +22,7 @@ from voxrt.octree import Octree, Rom, RomError, census, check_roots, decode, det
 from voxrt.octree.dialects import as_dialect
 from voxrt.voxelize import SceneWarning
 from voxrt.voxelize.arguments import choice, instance
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -39,7 +38,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize import ObjectReport
 
 
-class RomFiles(Struct, frozen=True):
+class RomFiles(Value, frozen=True):
     """Where a ROM was written: its words (a ``.mem``, most often) and its manifest."""
 
     mem: Path

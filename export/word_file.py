@@ -11,9 +11,8 @@ from importlib import import_module
 from stat import S_ISDIR, S_ISREG
 from typing import TYPE_CHECKING
 
-from msgspec import Struct
-
 from voxrt.octree import RomError, _native
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -34,7 +33,7 @@ _MAPPED = 1 << 24
 """Bytes from which a file is mapped: copies of smaller ones cost nothing, and cannot change."""
 
 
-class WordFile(Struct, frozen=True, eq=False):
+class WordFile(Value, frozen=True, eq=False):
     """What a file of words holds.
 
     Attributes

@@ -10,7 +10,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct
 from msgspec.structs import force_setattr
 
 from voxrt.octree import _native
@@ -20,6 +19,7 @@ from voxrt.octree.statistics import census
 from voxrt.octree.words import EMPTY, is_leaf, move_pointers
 from voxrt.voxelize import DoesNotFitError
 from voxrt.voxelize.arguments import instance, real, text, whole
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 _HIGHEST = (1 << 31) - 1
 
 
-class AnimationFrame(Struct, frozen=True):
+class AnimationFrame(Value, frozen=True):
     """A frame of an animation.
 
     Attributes
@@ -67,7 +67,7 @@ class AnimationFrame(Struct, frozen=True):
         text("name", self.name)
 
 
-class Animation(Struct, frozen=True):
+class Animation(Value, frozen=True):
     """The table of roots of a memory that holds several frames.
 
     Attributes

@@ -17,13 +17,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct
 
 from voxrt.octree import _native
 from voxrt.octree.difference import SurfaceChange, diff, surface_change
 from voxrt.octree.octree import Octree
 from voxrt.voxelize import DoesNotFitError
 from voxrt.voxelize.arguments import instance, whole, whole_array
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-class Fit(Struct, frozen=True, eq=False):
+class Fit(Value, frozen=True, eq=False):
     """An octree that fits a memory, and what changed, as :func:`fit` returns it.
 
     Attributes

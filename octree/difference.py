@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from msgspec import Struct
-
 from voxrt.octree import _native
 from voxrt.octree.octree import Octree
 from voxrt.octree.query import Corner  # noqa: TC001 - msgspec resolves the annotations of this module
 from voxrt.voxelize.arguments import instance
+from voxrt.voxelize.value import Value
 
 
-class Difference(Struct, frozen=True):
+class Difference(Value, frozen=True):
     """Voxels that differ, counted exactly, as :func:`diff` returns them.
 
     Attributes
@@ -36,7 +35,7 @@ class Difference(Struct, frozen=True):
         return self.appeared + self.vanished + self.recoloured
 
 
-class Region(Struct, frozen=True):
+class Region(Value, frozen=True):
     """Voxels that differ and are connected by faces, edges or corners, as :func:`differing_regions` returns them.
 
     Attributes
@@ -109,7 +108,7 @@ def differing_regions(first: Octree, second: Octree) -> tuple[Region, ...]:
     )
 
 
-class SurfaceChange(Struct, frozen=True):
+class SurfaceChange(Value, frozen=True):
     """Surface voxels and how many of them changed, as :func:`surface_change` returns them.
 
     A surface voxel is solid, and one of its six neighbours is empty or outside the world.

@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct
 
 from voxrt.octree import _native
 from voxrt.octree.octree import Octree
 from voxrt.octree.query import as_box
 from voxrt.voxelize import DoesNotFitError
 from voxrt.voxelize.arguments import flag, instance, whole
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -25,7 +25,7 @@ LEAF_LIMIT = 1 << 24
 """The most solid leaves that :func:`solid_leaves` returns."""
 
 
-class Leaves(Struct, frozen=True, eq=False):
+class Leaves(Value, frozen=True, eq=False):
     """Some leaves, in Morton order, as :func:`leaves` returns them.
 
     Attributes

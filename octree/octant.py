@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct
 
 from voxrt.octree.octree import Octree
 from voxrt.octree.query import as_corner
 from voxrt.octree.words import is_leaf, material
 from voxrt.voxelize.arguments import instance
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from voxrt.octree.query import Corner
 
 
-class Octant(Struct, frozen=True):
+class Octant(Value, frozen=True):
     """A leaf and its word, as :func:`octant_at` returns them.
 
     Attributes

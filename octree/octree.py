@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from msgspec import Struct
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     import numpy as np
@@ -17,7 +17,7 @@ MAX_DEPTH = 16
 """The most levels below the root: 65,536 voxels per side."""
 
 
-class Octree(Struct, frozen=True, eq=False, weakref=True):
+class Octree(Value, frozen=True, eq=False, weakref=True):
     """A valid octree memory. :func:`build`, :func:`from_dense`, :func:`from_points` and :func:`decode` make one.
 
     Attributes

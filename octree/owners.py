@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct
 
 from voxrt.octree.leaf_arrays import solid_leaves
 from voxrt.octree.morton import morton
 from voxrt.octree.octant import octant_at
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -22,7 +22,7 @@ SEVERAL = -1
 """The owner of an octant whose voxels belong to several objects."""
 
 
-class Owners(Struct, frozen=True, eq=False):
+class Owners(Value, frozen=True, eq=False):
     """The objects of a scene and the voxels that each owns.
 
     Attributes

@@ -5,15 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct
 
 from voxrt.octree.words import EMPTY
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-class Patch(Struct, frozen=True, eq=False):
+class Patch(Value, frozen=True, eq=False):
     """Writes that give a memory the octree of a commit, as :meth:`World.commit` returns them.
 
     All blocks are ones that no live root reaches: frames of these roots may be drawn while they are written. The word

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from msgspec import Struct
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from voxrt.octree.octree import Octree
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize import Material
 
 
-class Piece(Struct, frozen=True, eq=False):
+class Piece(Value, frozen=True, eq=False):
     """The voxels of a box, as :meth:`World.copy` returns them and :meth:`World.paste` takes them.
 
     Attributes

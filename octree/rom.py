@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from msgspec import Struct
 from msgspec.structs import force_setattr
 
 from voxrt.octree.octree import Octree
 from voxrt.octree.statistics import census
 from voxrt.voxelize import Grid, Material
 from voxrt.voxelize.arguments import instance, text
+from voxrt.voxelize.value import Value
 
 MOST_NAME = 1000
 """Characters of the longest name: whatever shows a memory shows its name."""
@@ -16,7 +16,7 @@ MOST_NAME = 1000
 _MOST_MATERIALS = 256
 
 
-class Rom(Struct, frozen=True, eq=False):
+class Rom(Value, frozen=True, eq=False):
     """An octree memory with its materials and its place in the scene.
 
     Attributes

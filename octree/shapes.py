@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeAlias
 
-from msgspec import Struct
 from msgspec.structs import force_setattr
 
 from voxrt.octree.camera import POSITION_UNITS
 from voxrt.octree.query import Corner, as_box
 from voxrt.voxelize.arguments import real, shown, vector
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from voxrt.octree import _native
@@ -20,7 +20,7 @@ _REACH = 1 << 20
 """Positions and radii are at most this, in voxels."""
 
 
-class Box(Struct, frozen=True):
+class Box(Value, frozen=True):
     """The voxels of a box.
 
     Attributes
@@ -48,7 +48,7 @@ class Box(Struct, frozen=True):
         force_setattr(self, "high", high)
 
 
-class Sphere(Struct, frozen=True):
+class Sphere(Value, frozen=True):
     """The voxels whose centres are in a ball, its surface included. Voxel v has its centre at v + 0.5.
 
     Attributes
@@ -77,7 +77,7 @@ class Sphere(Struct, frozen=True):
         force_setattr(self, "radius", _sixteenths("Sphere.radius", real("Sphere.radius", self.radius, low=0)))
 
 
-class Capsule(Struct, frozen=True):
+class Capsule(Value, frozen=True):
     """The voxels whose centres are within a distance of a straight line, which makes tunnels, for example.
 
     Attributes

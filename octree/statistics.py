@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from msgspec import Struct
 
 from voxrt.octree import _native
 from voxrt.octree.octree import Octree
 from voxrt.voxelize.arguments import instance
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 _COUNTED: WeakKeyDictionary[Octree, Census] = WeakKeyDictionary()  # an octree never changes
 
 
-class Census(Struct, frozen=True, eq=False):
+class Census(Value, frozen=True, eq=False):
     """Exact counts of leaves, as :func:`census` returns them.
 
     Attributes

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from msgspec import Struct
+from voxrt.voxelize.value import Value
 
 
-class WorldFigures(Struct, frozen=True):
+class WorldFigures(Value, frozen=True):
     """How the memory of a :class:`World` is used.
 
     Attributes

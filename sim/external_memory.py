@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from msgspec import Struct
+from voxrt.voxelize.value import Value
 
 LINE_BYTES = 32
 """Bytes of a line, which is a block of eight words."""
@@ -10,7 +10,7 @@ LINE_BYTES = 32
 _CLOCK_LIMIT = 1_000_000
 
 
-class Dram(Struct, frozen=True):
+class Dram(Value, frozen=True):
     """How fast an external memory is, in clocks of the ray tracer.
 
     Attributes
@@ -53,7 +53,7 @@ class Dram(Struct, frozen=True):
                 raise ValueError(f"{name} {getattr(self, name)} is not {low} … {high}")
 
 
-class CacheCost(Struct, frozen=True):
+class CacheCost(Value, frozen=True):
     """What a frame cost at the caches; they are empty when it starts.
 
     Attributes

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct
 
 from voxrt.sim.image import encode_png, save_png, show_picture
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     import os
@@ -20,7 +20,7 @@ FACE_NONE = 3
 """The face of a pixel whose ray crossed none: a miss, or a camera inside a solid."""
 
 
-class RenderCost(Struct, frozen=True):
+class RenderCost(Value, frozen=True):
     """What a frame cost.
 
     Attributes
@@ -44,7 +44,7 @@ class RenderCost(Struct, frozen=True):
     cache: CacheCost | None = None
 
 
-class Frame(Struct, frozen=True, eq=False):
+class Frame(Value, frozen=True, eq=False):
     """A rendered picture; row 0 is the top. A notebook shows it.
 
     Attributes

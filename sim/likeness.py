@@ -9,7 +9,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from msgspec import Struct
 
 from voxrt.octree.camera import POSITION_UNITS, pixel_directions
 from voxrt.sim import _model
@@ -19,6 +18,7 @@ from voxrt.sim.frame import FACE_NONE
 from voxrt.sim.similarity import peak_signal_to_noise, structural_similarity
 from voxrt.voxelize.colour.appearance import sample
 from voxrt.voxelize.colour.srgb import srgb_from_linear
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize import Grid, Scene, SurfaceAppearance
 
 
-class View(Struct, frozen=True, eq=False):
+class View(Value, frozen=True, eq=False):
     """What the camera sees of the meshes, or of the voxels.
 
     Attributes
@@ -46,7 +46,7 @@ class View(Struct, frozen=True, eq=False):
     normal: NDArray[np.float64]
 
 
-class Likeness(Struct, frozen=True):
+class Likeness(Value, frozen=True):
     """The similarity of meshes and voxels. NaN if nothing is seen that could be compared.
 
     Attributes
@@ -74,7 +74,7 @@ class Likeness(Struct, frozen=True):
     ssim: float
 
 
-class Comparison(Struct, frozen=True, eq=False):
+class Comparison(Value, frozen=True, eq=False):
     """What one camera sees of the meshes and of the voxels, and their similarity, as :func:`compare` returns it."""
 
     meshes: View

@@ -7,7 +7,6 @@ from math import prod
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct
 
 from voxrt.octree import Octree
 from voxrt.octree.camera import DIRECTION_LIMIT, POSITION_UNITS
@@ -15,6 +14,7 @@ from voxrt.octree.words import is_leaf, material
 from voxrt.sim import _model
 from voxrt.sim.errors import SimulatorError
 from voxrt.voxelize.arguments import instance, whole_array
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from voxrt.octree.camera import Camera, Triple
 
 
-class Reading(Struct, frozen=True):
+class Reading(Value, frozen=True):
     """A word that the ray read.
 
     Attributes
@@ -68,7 +68,7 @@ class Reading(Struct, frozen=True):
         return x + side, y + side, z + side
 
 
-class RayPath(Struct, frozen=True):
+class RayPath(Value, frozen=True):
     """A ray and all that it read, as :func:`follow_ray` and :func:`follow_pixel` return it.
 
     Attributes

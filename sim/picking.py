@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct
 
 from voxrt.octree import World
 from voxrt.octree.camera import DIRECTION_LIMIT, POSITION_UNITS
@@ -14,12 +13,13 @@ from voxrt.sim import _model
 from voxrt.sim.frame import FACE_NONE
 from voxrt.sim.ray_query import register_rays
 from voxrt.voxelize.arguments import instance, vector
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 
-class Picked(Struct, frozen=True):
+class Picked(Value, frozen=True):
     """A voxel and its face, as :func:`pick` returns them.
 
     Attributes

@@ -14,6 +14,7 @@ from voxrt.sim.engine_arguments import palette_of, shading_of
 from voxrt.sim.frame import FACE_NONE
 from voxrt.sim.rendering import check_lighting
 from voxrt.voxelize.arguments import instance
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from voxrt.octree.camera import Lighting, Triple
@@ -39,7 +40,7 @@ class Surface(Struct, frozen=True):
     voxel: tuple[int, int, int]
 
 
-class PixelColour(Struct, frozen=True):
+class PixelColour(Value, frozen=True):
     """The colour of a pixel and how it comes about, as :func:`explain_colour` returns it.
 
     Attributes

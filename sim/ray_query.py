@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct
 
 from voxrt.octree import Octree
 from voxrt.octree.camera import DIRECTION_LIMIT, POSITION_UNITS
 from voxrt.sim import _model
 from voxrt.sim.frame import FACE_NONE
 from voxrt.voxelize.arguments import instance, real_array, whole, whole_array
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -20,7 +20,7 @@ _CHUNK = 1 << 20  # rays at a time: 24 MB of registers
 _MOST_EXACT = 1 << 53  # integers that float64 holds
 
 
-class RayHits(Struct, frozen=True, eq=False):
+class RayHits(Value, frozen=True, eq=False):
     """What N rays hit.
 
     Attributes

@@ -7,7 +7,6 @@ from functools import partial
 from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
 import numpy as np
-from msgspec import Struct
 from msgspec.structs import replace
 
 from voxrt.octree import Rom, frame_octree
@@ -19,6 +18,7 @@ from voxrt.sim.frame import Frame, RenderCost
 from voxrt.sim.hardware import render_hardware
 from voxrt.sim.samples import join_samples, put_background
 from voxrt.voxelize.arguments import choice, real, text, whole, whole_array
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -36,7 +36,7 @@ _FRAME_LIMIT = 1 << 14
 _WIDEST_CELL = 1024.0  # in pixels
 
 
-class EngineCheck(Struct, frozen=True, eq=False):
+class EngineCheck(Value, frozen=True, eq=False):
     """The same view from both engines, as :func:`check` returns it.
 
     Attributes

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
-from msgspec import Struct
 from msgspec.structs import replace
 
 from voxrt.octree.budget import coarsen
@@ -14,6 +13,7 @@ from voxrt.octree.leaf_arrays import Leaves, solid_leaves
 from voxrt.octree.octant import octant_at
 from voxrt.view.cells import octant_cells
 from voxrt.view.octant_mesh import octant_mesh
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -32,7 +32,7 @@ Plane: TypeAlias = tuple[tuple[float, float, float], tuple[float, float, float]]
 """A normal and a point; octants on the side of the normal are cut away."""
 
 
-class Pane(Struct, frozen=True, eq=False):
+class Pane(Value, frozen=True, eq=False):
     """One memory in a picture.
 
     Attributes
@@ -121,7 +121,7 @@ class Pane(Struct, frozen=True, eq=False):
         return "\n".join(lines)
 
 
-class DrawnRay(Struct, frozen=True, eq=False):
+class DrawnRay(Value, frozen=True, eq=False):
     """A ray as a picture shows it, as :func:`voxrt.view.scene_overlay.drawn_ray` makes it.
 
     Attributes
@@ -146,7 +146,7 @@ class DrawnRay(Struct, frozen=True, eq=False):
     table: tuple[str, ...]
 
 
-class Preview(Struct, frozen=True, eq=False):
+class Preview(Value, frozen=True, eq=False):
     """A picture in which a pixel can be chosen.
 
     Attributes

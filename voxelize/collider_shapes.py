@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
-from msgspec import Struct
 from msgspec.structs import force_setattr
 
 from voxrt.voxelize import arguments
 from voxrt.voxelize.mesh import checked_surface
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -19,7 +19,7 @@ ColliderKind: TypeAlias = Literal["box", "sphere", "hull", "mesh"]
 COLLIDER_KINDS: tuple[ColliderKind, ...] = ("box", "sphere", "hull", "mesh")
 
 
-class BoxCollider(Struct, frozen=True, eq=False):
+class BoxCollider(Value, frozen=True, eq=False):
     """A box along the axes of its object's frame.
 
     Attributes
@@ -54,7 +54,7 @@ class BoxCollider(Struct, frozen=True, eq=False):
         force_setattr(self, "pow2", arguments.flag("BoxCollider.pow2", self.pow2))
 
 
-class SphereCollider(Struct, frozen=True, eq=False):
+class SphereCollider(Value, frozen=True, eq=False):
     """A ball in its object's frame; an ellipsoid where the object's transform scales the axes differently.
 
     Attributes
@@ -87,7 +87,7 @@ class SphereCollider(Struct, frozen=True, eq=False):
         force_setattr(self, "radius", radius)
 
 
-class HullCollider(Struct, frozen=True, eq=False):
+class HullCollider(Value, frozen=True, eq=False):
     """The convex hull of points in its object's frame.
 
     Attributes
@@ -115,7 +115,7 @@ class HullCollider(Struct, frozen=True, eq=False):
         force_setattr(self, "positions", points.astype(np.float64, copy=False))
 
 
-class MeshCollider(Struct, frozen=True, eq=False):
+class MeshCollider(Value, frozen=True, eq=False):
     """Triangles that are voxelized in place of the rendered ones.
 
     Attributes

@@ -5,16 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct
 from msgspec.structs import force_setattr
 
 from voxrt.voxelize import arguments
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-class CornerNormals(Struct, frozen=True, eq=False):
+class CornerNormals(Value, frozen=True, eq=False):
     """The normals that the author gave to the corners of a mesh's triangles.
 
     Attributes

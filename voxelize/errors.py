@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from msgspec import Struct
+from voxrt.voxelize.value import Value
 
 DAMAGED = "check the file in another program, and export it again"
 """How to mend a file that no program is likely to read."""
@@ -41,7 +41,7 @@ class DoesNotFitError(Exception):
     """Valid input that exceeds a limit: too many materials, too many voxels per side, too many words."""
 
 
-class SceneWarning(Struct, frozen=True):
+class SceneWarning(Value, frozen=True):
     """Something in the input that was ignored or replaced.
 
     Attributes

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from msgspec import Struct
 from msgspec.structs import force_setattr
 
 from voxrt.voxelize import arguments
+from voxrt.voxelize.value import Value
 
 DEPTH_LIMIT = 16
 """The deepest octree: 65536 voxels per side."""
 
 
-class Grid(Struct, frozen=True):
+class Grid(Value, frozen=True):
     """A cube of 2**depth voxels per side. Its axes are the scene's axes: no swap, no mirror.
 
     Attributes

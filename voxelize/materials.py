@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from msgspec import Struct
 from msgspec.structs import force_setattr
 
 from voxrt.voxelize import arguments
+from voxrt.voxelize.value import Value
 
 
-class Material(Struct, frozen=True):
+class Material(Value, frozen=True):
     """A uniform material. Its id is its index in :attr:`Scene.materials <voxrt.voxelize.Scene.materials>`.
 
     Attributes

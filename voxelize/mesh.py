@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct
 from msgspec.structs import force_setattr
 
 from voxrt.voxelize import arguments
 from voxrt.voxelize.colour.appearance import SurfaceAppearance
 from voxrt.voxelize.corner_normals import CornerNormals
 from voxrt.voxelize.materials import MATERIAL_LIMIT
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 _MOST_CELLS_PER_SIDE = 1 << 16
 
 
-class MaterialMap(Struct, frozen=True, eq=False):
+class MaterialMap(Value, frozen=True, eq=False):
     """Materials that vary over triangles, made for one grid by :func:`voxrt.voxelize.assign_colours`.
 
     Each mapped triangle lies in a raster of material ids. A point of the triangle has raster coordinates (column, row),
@@ -72,7 +72,7 @@ class MaterialMap(Struct, frozen=True, eq=False):
         return f"MaterialMap(triangles={len(self.sizes)}, cells={len(self.materials)})"
 
 
-class Mesh(Struct, frozen=True, eq=False):
+class Mesh(Value, frozen=True, eq=False):
     """Triangles in their object's frame. Instances share one mesh.
 
     Attributes

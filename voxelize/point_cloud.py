@@ -5,16 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct
 from msgspec.structs import force_setattr
 
 from voxrt.voxelize import arguments
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-class PointCloud(Struct, frozen=True, eq=False):
+class PointCloud(Value, frozen=True, eq=False):
     """Points without a surface. A voxel is solid where it holds enough of them.
 
     Attributes

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct, field
+from msgspec import field
 from msgspec.structs import force_setattr
 
 from voxrt.voxelize import arguments
@@ -17,6 +17,7 @@ from voxrt.voxelize.materials import MATERIAL_LIMIT, Material
 from voxrt.voxelize.mesh import NO_TRIANGLES, Mesh
 from voxrt.voxelize.point_cloud import PointCloud
 from voxrt.voxelize.rules import OBJECT_FILLS, RULES, ObjectFill, Rule
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.errors import SceneWarning
 
 
-class SceneObject(Struct, frozen=True, eq=False):
+class SceneObject(Value, frozen=True, eq=False):
     """One object of the scene.
 
     Attributes
@@ -107,7 +108,7 @@ class SceneObject(Struct, frozen=True, eq=False):
 _AFFINE_TOLERANCE = 1e-6
 
 
-class Viewpoint(Struct, frozen=True):
+class Viewpoint(Value, frozen=True):
     """The camera that an author gave a scene.
 
     Attributes
@@ -164,7 +165,7 @@ class Viewpoint(Struct, frozen=True):
         force_setattr(self, "shift", (float(across), float(above)))
 
 
-class PointLight(Struct, frozen=True):
+class PointLight(Value, frozen=True):
     """The light that an author gave a scene.
 
     Attributes
@@ -189,7 +190,7 @@ class PointLight(Struct, frozen=True):
         force_setattr(self, "position", arguments.vector("PointLight.position", self.position))
 
 
-class Scene(Struct, frozen=True, eq=False):
+class Scene(Value, frozen=True, eq=False):
     """The content of an asset file, in the scene frame.
 
     Attributes

@@ -17,6 +17,7 @@ from msgspec.structs import asdict, astuple, replace
 from voxrt.voxelize.colour.voxel_colours import DEFAULT_COLOURS, assign_colours
 from voxrt.voxelize.errors import DoesNotFitError, SceneWarning
 from voxrt.voxelize.materials import MATERIAL_LIMIT
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -29,13 +30,13 @@ if TYPE_CHECKING:
     from voxrt.voxelize.object_proxies import Geometry
     from voxrt.voxelize.scene import Scene, SceneObject
 
-    Value = TypeVar("Value")
+    Part = TypeVar("Part")
 
 _DEFORMED = {"positions", "normals"}
 """What an animation changes of a mesh; its triangles and their appearance stay."""
 
 
-class SceneFrames(Struct, frozen=True, eq=False):
+class SceneFrames(Value, frozen=True, eq=False):
     """The scenes of all frames, as :func:`join_scenes` makes them.
 
     Attributes
@@ -207,7 +208,7 @@ def _kept_mesh(mesh: Mesh, known: dict[object, object]) -> Mesh:
     return known[key]  # type: ignore[return-value]
 
 
-def _kept(value: Value, known: dict[object, object]) -> Value:
+def _kept(value: Part, known: dict[object, object]) -> Part:
     """Return the first value that was equal to this one."""
     return value if value is None else known.setdefault(_fingerprint(value), value)  # type: ignore[return-value]
 

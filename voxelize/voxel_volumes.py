@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct
 
 from voxrt.voxelize import _native, arguments
 from voxrt.voxelize.scene_parts import SceneParts, unreachable
+from voxrt.voxelize.value import Value
 from voxrt.voxelize.voxelizer import MOST_THREADS
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.scene import Scene
 
 
-class VolumeFractions(Struct, frozen=True, eq=False):
+class VolumeFractions(Value, frozen=True, eq=False):
     """How much of each voxel an object fills, whatever other objects there are.
 
     A voxel is listed where the surface of an object passes it. All others are filled whole, or not at all.

@@ -9,9 +9,10 @@ from __future__ import annotations
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
-from msgspec import Struct, field
+from msgspec import field
 
 from voxrt.voxelize.rules import Rule  # noqa: TC001 - msgspec reads it
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     import numpy as np
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.errors import SceneWarning
 
 
-class Voxels(Struct, frozen=True, eq=False):
+class Voxels(Value, frozen=True, eq=False):
     """The solid voxels of a grid.
 
     Morton code: bit 3k is bit k of x, bit 3k+1 of y, bit 3k+2 of z, so the octant index is {z, y, x}. A brick holds
@@ -89,7 +90,7 @@ class ObjectMode(StrEnum):
     """It closes; faces or connected components that were inside out were turned, walls of cavities excepted."""
 
 
-class ObjectReport(Struct, frozen=True):
+class ObjectReport(Value, frozen=True):
     """How one object was voxelized.
 
     Attributes
@@ -120,7 +121,7 @@ class ObjectReport(Struct, frozen=True):
     rule: Rule = "touch"
 
 
-class Voxelization(Struct, frozen=True, eq=False):
+class Voxelization(Value, frozen=True, eq=False):
     """Voxels, and how each object was voxelized.
 
     Attributes
@@ -145,7 +146,7 @@ class Voxelization(Struct, frozen=True, eq=False):
         return f"Voxelization(voxels={self.voxels!r}, objects={len(self.objects)}, warnings={len(self.warnings)})"
 
 
-class VoxelizationReport(Struct, frozen=True):
+class VoxelizationReport(Value, frozen=True):
     """How each object was voxelized: a :class:`Voxelization` whose voxels were handed on block by block.
 
     Attributes

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct
+
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -22,7 +23,7 @@ REGISTER_LIMIT = 1 << 15
 """Every component of look, right and up is smaller than this."""
 
 
-class Camera(Struct, frozen=True):
+class Camera(Value, frozen=True):
     """What the ray generator reads: direction = look + right * (column - W // 2) + up * (H // 2 - row).
 
     Attributes

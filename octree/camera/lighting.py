@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
-from msgspec import Struct
 from msgspec.structs import replace
 
 from voxrt.octree.camera.camera import Triple  # noqa: TC001 - manifests are read by the annotations of this class
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Set as AbstractSet
@@ -28,7 +28,7 @@ FACES: Faces = (189, 189, 140, 255, 219, 219)
 """The default: the top (+y) is the brightest, the bottom the darkest, and the sides differ."""
 
 
-class Lighting(Struct, frozen=True):
+class Lighting(Value, frozen=True):
     """How to shade a picture.
 
     Attributes

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import manifold3d
 import numpy as np
-from msgspec import Struct
 
 from voxrt.voxelize import arguments, primitive_meshes
 from voxrt.voxelize.authoring.transforms import FARTHEST, SolidError, placement
 from voxrt.voxelize.mesh import checked_surface
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,7 +25,7 @@ Axis: TypeAlias = Literal["x", "y", "z"]
 _AXES: tuple[Axis, ...] = ("x", "y", "z")
 
 
-class Solid(Struct, frozen=True, eq=False):
+class Solid(Value, frozen=True, eq=False):
     """A closed solid in metres. Operators: ``a | b`` union, ``a - b`` difference, ``a & b`` intersection.
 
     :func:`box`, :func:`sphere`, :func:`cylinder`, :func:`cone`, :func:`extrude`, :func:`hull` and :func:`closed` make

@@ -8,17 +8,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct
 from msgspec.structs import force_setattr
 
 from voxrt.voxelize import _native, arguments
 from voxrt.voxelize.colour.texture import Texture
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-class Appearance(Struct, frozen=True, eq=False):
+class Appearance(Value, frozen=True, eq=False):
     """What a material of a file says about a surface: a colour factor, a texture, an alpha cutoff.
 
     Attributes
@@ -61,7 +61,7 @@ class Appearance(Struct, frozen=True, eq=False):
         force_setattr(self, "mirror", arguments.flag("Appearance.mirror", self.mirror))
 
 
-class SurfaceAppearance(Struct, frozen=True, eq=False):
+class SurfaceAppearance(Value, frozen=True, eq=False):
     """The appearance of the triangles of one mesh, in the order of its triangles.
 
     Attributes

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
-from msgspec import Struct
 from msgspec.structs import force_setattr
 
 from voxrt.voxelize import arguments
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -20,7 +20,7 @@ Wrap: TypeAlias = Literal["repeat", "mirror", "clamp"]
 WRAPS: tuple[Wrap, ...] = ("repeat", "mirror", "clamp")
 
 
-class Texture(Struct, frozen=True, eq=False):
+class Texture(Value, frozen=True, eq=False):
     """An image that colours surfaces.
 
     Attributes

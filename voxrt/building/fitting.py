@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct
 from msgspec.structs import replace
 
 from voxrt import octree, sim
@@ -14,6 +13,7 @@ from voxrt.sim import _model
 from voxrt.sim.engine_arguments import palette_of
 from voxrt.views.viewpoint import aim_camera
 from voxrt.voxelize import AssetError
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize import Material
 
 
-class BudgetFit(Struct, frozen=True, eq=False):
+class BudgetFit(Value, frozen=True, eq=False):
     """What fitting a memory to a budget took.
 
     Attributes
@@ -47,7 +47,7 @@ class BudgetFit(Struct, frozen=True, eq=False):
     lossless: tuple[int, int] | None = None
 
 
-class InteriorFit(Struct, frozen=True):
+class InteriorFit(Value, frozen=True):
     """What became of the voxels that no ray from outside can reach.
 
     Attributes

@@ -5,10 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from msgspec import Struct, field
+from msgspec import field
 
 from voxrt import export, octree
 from voxrt.options.shared import PREVIEW_SIZE
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     import os
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize import ObjectReport, Scene, SceneWarning
 
 
-class BuildResult(Struct, frozen=True, eq=False):
+class BuildResult(Value, frozen=True, eq=False):
     """What a build made. A notebook shows its picture.
 
     Attributes

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 from msgspec import Struct
 from msgspec.structs import force_setattr, replace
 
+from voxrt.voxelize.value import Value
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
@@ -66,7 +68,7 @@ def option(kind: Kind, default: Any, group: str | None, text: str, **more: Any) 
     return Option(kind, default, group, text, **more)
 
 
-class OptionTable(Struct, frozen=True):
+class OptionTable(Value, frozen=True):
     """A table of options by name. The fields of derived classes are keywords."""
 
     def __post_init__(self) -> None:

@@ -6,11 +6,11 @@ from io import BytesIO
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct
 from msgspec.structs import replace
 
 from voxrt import octree, sim, voxelize
 from voxrt.views.viewpoint import aim_camera
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize import Scene
 
 
-class LikenessAtDepth(Struct, frozen=True):
+class LikenessAtDepth(Value, frozen=True):
     """A scene at one depth, as :func:`likeness_curve` finds it.
 
     Attributes

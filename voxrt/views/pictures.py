@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
-from msgspec import Struct
 
 from voxrt import sim
 from voxrt.export import Blob
@@ -20,6 +19,7 @@ from voxrt.sim.backgrounds import background_of
 from voxrt.sim.image import save_png
 from voxrt.views.viewpoint import aim_camera
 from voxrt.voxelize.arguments import instance, whole_array
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     import os
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 _SAMPLES = 4  # rays per pixel of a preview, on each axis
 
 
-class Picture(Struct, frozen=True, eq=False):
+class Picture(Value, frozen=True, eq=False):
     """A frame, the camera that saw it and the engine that rendered it. A notebook shows it.
 
     Attributes
