@@ -6,11 +6,11 @@ import zlib
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct
 
 from voxrt.board.view import FACES, View, refit
 from voxrt.octree.camera import look_at
 from voxrt.sim import _model
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from voxrt.octree.camera import Camera
 
 
-class ViewCheck(Struct, frozen=True):
+class ViewCheck(Value, frozen=True):
     """A view of a scene, as the board has it and as the exact model has it.
 
     Attributes

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Protocol
 
-from msgspec import Struct
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from voxrt.octree import Patch
 
 
-class Identity(Struct, frozen=True):
+class Identity(Value, frozen=True):
     """What a device is and what it can hold.
 
     Attributes
@@ -60,7 +60,7 @@ class Identity(Struct, frozen=True):
         return 1 + self.pixel_seconds * size[0] * size[1]
 
 
-class Counters(Struct, frozen=True):
+class Counters(Value, frozen=True):
     """The cost of a frame: rays, octree words read and clock cycles (None where not counted), wall seconds."""
 
     rays: int
@@ -69,7 +69,7 @@ class Counters(Struct, frozen=True):
     seconds: float
 
 
-class Frame(Struct, frozen=True, eq=False):
+class Frame(Value, frozen=True, eq=False):
     """A complete frame: uint8, shape (H, W, 3), sRGB, row 0 at the top, C-contiguous; and its cost."""
 
     colour: NDArray[np.uint8]

@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct
 from msgspec.structs import replace
 
 from voxrt.board.errors import Refused
 from voxrt.board.scene import Scene, check_memory
 from voxrt.octree.words import EMPTY, is_leaf, move_pointers
 from voxrt.sim.engine_arguments import mirrors_of, palette_of
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -22,7 +22,7 @@ _FIRST_WORDS = 4096
 """Words of an octree that are read at first; most of a small one."""
 
 
-class LoadedScene(Struct, frozen=True, eq=False):
+class LoadedScene(Value, frozen=True, eq=False):
     """A scene in the memory of a device.
 
     Attributes

@@ -5,10 +5,9 @@ from __future__ import annotations
 import zlib
 from typing import TYPE_CHECKING
 
-from msgspec import Struct
-
 from voxrt.board.errors import Refused
 from voxrt.octree import RomError, check_roots, decode
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,7 +21,7 @@ MEMORY_SUFFIXES = (".blob", ".mem")
 """Suffixes of the files of an octree memory that a device takes."""
 
 
-class Scene(Struct, frozen=True, eq=False):
+class Scene(Value, frozen=True, eq=False):
     """An octree memory with its materials, first camera and first lighting.
 
     Attributes

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from msgspec import Struct
-
 from voxrt.octree.camera import (
     FACES,
     FEATURES,
@@ -16,11 +14,12 @@ from voxrt.octree.camera import (
     frame_world,
     refit,
 )
+from voxrt.voxelize.value import Value
 
 __all__ = ["FACES", "FEATURES", "Camera", "Faces", "Lighting", "Shading", "Triple", "View", "frame_world", "refit"]
 
 
-class View(Struct, frozen=True):
+class View(Value, frozen=True):
     """A frame that a device is asked for.
 
     Attributes

@@ -5,7 +5,6 @@ What reads and writes a format is imported when a file has its suffix.
 
 from __future__ import annotations
 
-import mmap
 import os
 from importlib import import_module
 from stat import S_ISDIR, S_ISREG
@@ -16,6 +15,7 @@ from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
+    from mmap import mmap
     from pathlib import Path
 
     import numpy as np
@@ -79,7 +79,7 @@ def read_bytes(path: Path) -> bytes:
         raise RomError(f"{path}: cannot be read: {error.strerror}; name an octree memory") from None
 
 
-def mapped_bytes(path: Path) -> bytes | mmap.mmap:
+def mapped_bytes(path: Path) -> bytes | mmap:
     """Map a large file, or read another one whole; RomError where that fails.
 
     A mapped file may be replaced, as voxrt replaces files, but nobody may write into it or cut it while it is in use.
@@ -88,7 +88,9 @@ def mapped_bytes(path: Path) -> bytes | mmap.mmap:
         if path.is_file():
             with path.open("rb") as file:
                 if os.fstat(file.fileno()).st_size >= _MAPPED:
-                    return mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
+                    from mmap import ACCESS_READ, mmap  # noqa: PLC0415 - for large files alone
+
+                    return mmap(file.fileno(), 0, access=ACCESS_READ)
     except OSError:
         pass  # reading says why
     return read_bytes(path)

@@ -6,21 +6,20 @@ import hmac
 import ipaddress
 from urllib.parse import parse_qs, urlsplit
 
-from msgspec import Struct
-
 from voxrt.serve.shown_text import shown_line
+from voxrt.voxelize.value import Value
 
 _LOOPBACK_NAMES = ("localhost", "127.0.0.1", "::1")
 
 
-class Refusal(Struct, frozen=True):
+class Refusal(Value, frozen=True):
     """The answer to a connection that is refused: HTTP status and a line of text."""
 
     status: int
     text: str
 
 
-class AccessControl(Struct, frozen=True):
+class AccessControl(Value, frozen=True):
     """Checks requests for a WebSocket.
 
     Attributes

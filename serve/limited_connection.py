@@ -6,12 +6,13 @@ import asyncio
 import time
 from typing import TYPE_CHECKING, Any, cast
 
-from msgspec import Struct, field
+from msgspec import field
 from websockets.asyncio.server import ServerConnection
 from websockets.frames import DATA_OPCODES, CloseCode, Frame, Opcode
 
 from voxrt.serve.rate_limiter import RateLimiter
 from voxrt.serve.strangers import network
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -80,7 +81,7 @@ class _GatedTransport:
             self._transport.resume_reading()
 
 
-class ConnectionGuard(Struct, frozen=True):
+class ConnectionGuard(Value, frozen=True):
     """What all connections of a server share.
 
     Attributes

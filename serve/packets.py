@@ -7,10 +7,10 @@ import zlib
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct
 
 from voxrt.board.device import Counters, Frame
 from voxrt.board.errors import Refused
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from typing import Final
@@ -33,7 +33,7 @@ FRAME_HEADER: Final = _FRAME.size
 CHUNK_HEADER: Final = _CHUNK.size
 
 
-class FramePacket(Struct, frozen=True, eq=False):
+class FramePacket(Value, frozen=True, eq=False):
     """A frame with its numbers.
 
     Attributes
@@ -56,7 +56,7 @@ class FramePacket(Struct, frozen=True, eq=False):
     frame: Frame
 
 
-class Chunk(Struct, frozen=True, eq=False):
+class Chunk(Value, frozen=True, eq=False):
     """A part of an upload: number of the upload, offset in all its files together, and the bytes."""
 
     upload: int

@@ -5,9 +5,8 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
-from msgspec import Struct
-
 import voxrt.octree
+from voxrt.voxelize.value import Value
 
 _TYPES = {
     ".html": "text/html; charset=utf-8",
@@ -31,7 +30,7 @@ HEADERS = (
 """HTTP headers of every file: the page loads nothing from elsewhere, and no other page may embed it."""
 
 
-class PageFile(Struct, frozen=True):
+class PageFile(Value, frozen=True):
     """The bytes of a file and its media type."""
 
     data: bytes

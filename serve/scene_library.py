@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from msgspec import Struct, field
+from msgspec import field
 
 from voxrt.board.errors import Refused
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     from voxrt.serve.scene_process import SceneReader
 
 
-class SceneLibrary(Struct, frozen=True):
+class SceneLibrary(Value, frozen=True):
     """The reader of files, and the server's own scenes.
 
     Attributes

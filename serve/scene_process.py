@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING, Protocol
 
 import msgspec
 import numpy as np
-from msgspec import Struct
 
 from voxrt.board.errors import Refused
 from voxrt.board.scene import Scene
 from voxrt.serve.scene_child import Described, Message, Problem, Stage
 from voxrt.serve.shown_text import shown_line, shown_warnings
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -57,7 +57,7 @@ class SceneReader(Protocol):
         """
 
 
-class ChildReader(Struct, frozen=True):
+class ChildReader(Value, frozen=True):
     """Makes scenes in a process of its own.
 
     Attributes

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from msgspec import Struct, field
+from msgspec import field
+
+from voxrt.voxelize.value import Value
 
 
-class Limits(Struct, frozen=True):
+class Limits(Value, frozen=True):
     """The load that a server accepts.
 
     Attributes
@@ -54,7 +56,7 @@ class Limits(Struct, frozen=True):
     frame_bytes: int = 1 << 28
 
 
-class ServerOptions(Struct, frozen=True):
+class ServerOptions(Value, frozen=True):
     """Where a server listens, and who may connect.
 
     Attributes

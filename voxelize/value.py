@@ -9,22 +9,30 @@ from __future__ import annotations
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from msgspec import Struct
+from msgspec import NODEFAULT, Struct, StructMeta
 
 if TYPE_CHECKING:
     from dataclasses import Field
+    from inspect import Signature
     from typing import ClassVar
 
 
 @cache
 def _twin(struct: type[Struct]) -> type:
-    """Return a dataclass with the fields of a struct, but for their defaults."""
-    from dataclasses import make_dataclass  # noqa: PLC0415 - for those who ask alone
+    """Return a dataclass with the fields of a struct."""
+    from dataclasses import MISSING, field, make_dataclass  # noqa: PLC0415 - for those who ask alone
 
     types: dict[str, Any] = {}
     for base in reversed(struct.__mro__):
         types |= vars(base).get("__annotations__", {})
-    return make_dataclass(struct.__name__, [(name, types[name]) for name in struct.__struct_fields__], frozen=True)
+    names, defaults = struct.__struct_fields__, struct.__struct_defaults__
+    fields = []
+    for name, default in zip(names, (*(NODEFAULT for _ in names[len(defaults) :]), *defaults), strict=True):
+        known = {"default_factory": default.factory} if hasattr(default, "factory") else {"default": default}
+        if default is NODEFAULT:
+            known = {"default": MISSING}
+        fields.append((name, types[name], field(kw_only=name not in struct.__match_args__, **known)))
+    return make_dataclass(struct.__name__, fields, frozen=True)
 
 
 class _OfTwin:
@@ -37,7 +45,16 @@ class _OfTwin:
         return getattr(_twin(struct), self._name)
 
 
-class Value(Struct, frozen=True):
+class _ValueMeta(StructMeta):
+    @property
+    def __signature__(self) -> Signature:
+        """That of the twin: msgspec's own fails where the types of fields are imported for type checkers alone."""
+        from inspect import signature  # noqa: PLC0415 - as above
+
+        return signature(_twin(self))
+
+
+class Value(Struct, metaclass=_ValueMeta, frozen=True):
     """A value that never changes.
 
     Examples

@@ -11,7 +11,8 @@ import re
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct
+
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -31,7 +32,7 @@ GOWIN_WIDTHS = (1, 2, 4, 8, 9, 16, 18, 32, 36)
 """The same of a GW2A: 8, 16 and 32 leave out every ninth bit."""
 
 
-class Slice(Struct, frozen=True):
+class Slice(Value, frozen=True):
     """The part of a memory that a block RAM holds.
 
     Attributes

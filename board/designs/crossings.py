@@ -15,7 +15,7 @@ from collections import Counter, defaultdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from msgspec import Struct
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -29,7 +29,7 @@ _MADE_UP = re.compile(r"_(?:LUT4|TRELLIS_FF|PFUMX|L6MUX21|CCU2C|DP16KD|TRELLIS_D
 _CLOCKS = {"CLKOP": "bit", "CLKOS": "pixel", "CLKOS2": "system", "CLKOS3": "chip"}  # board_pll.sv
 
 
-class Crossing(Struct, frozen=True, order=True):
+class Crossing(Value, frozen=True, order=True):
     """Registers that depend on registers of another clock.
 
     Attributes
@@ -52,7 +52,7 @@ class Crossing(Struct, frozen=True, order=True):
     is_synchronized: bool
 
 
-class _Element(Struct, frozen=True):
+class _Element(Value, frozen=True):
     """What one clock of a cell takes, and what it gives."""
 
     clock: int

@@ -12,9 +12,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct
 
 from voxrt.board.designs.base_design import encode_slice
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -29,7 +29,7 @@ _FRAMES = 256  # of a row of block RAMs
 _ZERO = ord("0")
 
 
-class BlockRams(Struct, frozen=True):
+class BlockRams(Value, frozen=True):
     """Where the block RAMs of a design are in its ``.fs``.
 
     Attributes

@@ -8,10 +8,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from msgspec import Struct
 
 from voxrt.board.designs.boot_table import BOARD_REGISTERS
 from voxrt.board.errors import DeviceError
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -57,7 +57,7 @@ _LAST_STAGE = 3
 State = Literal["passed", "failed", "open"]
 
 
-class Finding(Struct, frozen=True):
+class Finding(Value, frozen=True):
     """What one part of the self-test found.
 
     Attributes

@@ -3,9 +3,12 @@
 import copy
 import dataclasses
 import importlib
+import inspect
 import pickle
 import pprint
+from typing import TYPE_CHECKING
 
+import msgspec
 import numpy as np
 import pytest
 from msgspec import Struct, structs
@@ -14,7 +17,11 @@ import voxrt
 from voxrt.voxelize import Grid, Material, Mesh, PointLight, Scene, SceneObject
 from voxrt.voxelize.value import Value
 
-PACKAGES = ["", ".voxelize", ".voxelize.authoring", ".octree", ".octree.camera", ".export", ".sim", ".view"]
+if TYPE_CHECKING:  # and only then, as in the packages
+    from fractions import Fraction
+
+PACKAGES = ["", ".voxelize", ".voxelize.authoring", ".octree", ".octree.camera", ".export", ".sim", ".view", ".board"]
+PACKAGES += [".serve"]
 
 
 def exported():
@@ -29,6 +36,7 @@ def test_a_value_has_the_fields_of_a_dataclass(struct):
     assert dataclasses.is_dataclass(struct)
     assert tuple(one.name for one in dataclasses.fields(struct)) == struct.__struct_fields__
     assert all(isinstance(one.type, str) for one in dataclasses.fields(struct))
+    assert list(inspect.signature(struct).parameters) == list(struct.__struct_fields__)
     assert struct.__struct_config__.frozen
 
 
@@ -77,7 +85,13 @@ def test_derived_values_have_the_fields_of_their_bases():
 
     class Derived(Plain, frozen=True):
         second: "tuple[int, ...]" = ()
+        third: "list[Fraction]" = msgspec.field(default_factory=list)
 
-    assert [one.name for one in dataclasses.fields(Derived)] == ["first", "second"]
-    assert dataclasses.asdict(Derived(1)) == {"first": 1, "second": ()}
+    class Keywords(Plain, frozen=True, kw_only=True):
+        fourth: "Fraction"
+
+    assert [one.name for one in dataclasses.fields(Derived)] == ["first", "second", "third"]
+    assert str(inspect.signature(Derived)).startswith("(first: 'int', second: 'tuple[int, ...]' = (), third: 'list")
+    assert str(inspect.signature(Keywords)) == "(first: 'int', *, fourth: 'Fraction') -> None"
+    assert dataclasses.asdict(Derived(1)) == {"first": 1, "second": (), "third": []}
     assert not dataclasses.is_dataclass(Struct)

@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct
 
 from voxrt.board.designs.build import RTL, SELFTESTS, list_sources, memories, parameters, top_of
+from voxrt.voxelize.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -27,7 +27,7 @@ _CHIPS = {"ecp5_top_sdram", "ecp5_selftest_sdram"}  # Tops whose pins need an SD
 _CHIP = (_HERE / "sdram_model.sv", _HERE / "sdram_board.sv")  # ... as here.
 
 
-class Timing(Struct, frozen=True):
+class Timing(Value, frozen=True):
     """What a monitor measured of a frame, in pixel clocks and rows; least and most where it may differ by row."""
 
     pixels: int

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import binascii
 from typing import TYPE_CHECKING, TypeVar
 from urllib.parse import unquote, unquote_to_bytes
@@ -179,7 +178,7 @@ class Document:
             return unquote_to_bytes(body)
         text = unquote(body) if "%" in body else body
         try:
-            return base64.b64decode(text + "=" * (-len(text) % 4), validate=True)
+            return binascii.a2b_base64(text + "=" * (-len(text) % 4), strict_mode=True)
         except (binascii.Error, ValueError):
             raise self.error(place, "a data URI that is not base64") from None
 

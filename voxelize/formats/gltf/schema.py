@@ -5,7 +5,7 @@ Field names are the format's own in snake case. Other members (roughness, sheen 
 specification, section 5 (properties reference).
 """
 
-from __future__ import annotations
+# Without `from __future__ import annotations`: msgspec compiles every annotation that is a string, which takes 2 ms.
 
 from typing import Annotated, Literal, TypeAlias
 
