@@ -21,10 +21,11 @@ if TYPE_CHECKING:
 def _twin(struct: type[Struct]) -> type:
     """Return a dataclass with the fields of a struct."""
     from dataclasses import MISSING, field, make_dataclass  # noqa: PLC0415 - for those who ask alone
+    from inspect import get_annotations  # noqa: PLC0415
 
     types: dict[str, Any] = {}
     for base in reversed(struct.__mro__):
-        types |= vars(base).get("__annotations__", {})
+        types |= get_annotations(base)
     names, defaults = struct.__struct_fields__, struct.__struct_defaults__
     fields = []
     for name, default in zip(names, (*(NODEFAULT for _ in names[len(defaults) :]), *defaults), strict=True):
