@@ -125,9 +125,11 @@ def test_paint_undo_and_redo(page: Edited) -> None:
     page.browser.keys(["\ue009", "y"], 0.01)
     page.waits(3)
     assert np.array_equal(frame_of(page.browser)[2], painted)
-    page.browser.click("#edit-tools button:nth-of-type(5)")  # Undo
+    undo = "#edit-tools button:nth-of-type(5)"
+    assert page.browser.until(f"!document.querySelector('{undo}').disabled")  # the figures come after the picture
+    page.browser.click(undo)
     page.waits(4)
-    assert page.browser.until("document.querySelector('#edit-tools button:nth-of-type(5)').disabled")
+    assert page.browser.until(f"document.querySelector('{undo}').disabled")
 
 
 def test_a_held_button_repeats_and_is_undone_at_once(page: Edited) -> None:
