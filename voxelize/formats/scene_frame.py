@@ -27,7 +27,8 @@ FARTHEST = 1e60
 
 def in_range(positions: NDArray[np.floating]) -> NDArray[np.bool_]:
     """Tell which positions, shape (…, 3), have three coordinates that are numbers below :data:`FARTHEST`."""
-    inside: NDArray[np.bool_] = (np.abs(positions) < np.float64(FARTHEST)).all(axis=-1)
+    x, y, z = np.moveaxis(np.abs(positions) < np.float64(FARTHEST), -1, 0)  # NumPy is slow along short rows
+    inside: NDArray[np.bool_] = x & y & z
     return inside
 
 
@@ -58,17 +59,19 @@ def hint_up_axis(
     """
     if up is not None:
         return
-    corners = positions[triangles[:: max(1, len(triangles) // _ENOUGH)]].astype(np.float64)
-    low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
+    some = positions[triangles[:: max(1, len(triangles) // _ENOUGH)]]
+    corners = np.ascontiguousarray(some.transpose(1, 2, 0), np.float64)  # corner, axis, triangle
+    low, high = corners.min(axis=(0, 2)), corners.max(axis=(0, 2))
     size = float((high - low).max())
     if not 0 < size < FARTHEST:
         return
-    corners = (corners - low) / size
-    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    corners = (corners - low[:, None]) / size
+    u, v = corners[1] - corners[0], corners[2] - corners[0]
+    area = np.sqrt(sum((u[i - 2] * v[i - 1] - u[i - 1] * v[i - 2]) ** 2 for i in range(3)))
     total = area.sum()
 
     def share(axis: int, end: float) -> float:
-        flat = np.abs(corners[:, :, axis] - end).max(axis=1) < _THIN
+        flat = np.abs(corners[:, axis] - end).max(axis=0) < _THIN
         return float(area[flat].sum() / total)
 
     if total > 0:
