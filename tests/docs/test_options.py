@@ -16,6 +16,7 @@ from voxrt.cli.line.help_text import command_help, label, option_text, task_help
 from voxrt.options.build_options import BuildOptions
 from voxrt.options.commands import COMMANDS
 from voxrt.options.option import options_of
+from voxrt.options.picture_commands import TraceCommand
 from voxrt.options.render_options import RenderOptions
 from voxrt.options.tasks import TASKS
 
@@ -124,3 +125,8 @@ def test_the_command_lines_of_a_task_are_in_the_readme_and_can_be_read(task):
         assert line in readme
         command, *words = line.replace("voxrt-build", "voxrt build").split()[1:]
         read_options(command, words)
+
+
+def test_a_table_needs_what_has_no_default():
+    with pytest.raises(TypeError, match="TraceCommand needs scene"):
+        TraceCommand(pixel=(1, 2))

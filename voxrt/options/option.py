@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
-from msgspec import Struct
+from msgspec import NODEFAULT, Struct
 from msgspec.structs import force_setattr, replace
 
 from voxrt.voxelize.value import Value
@@ -74,6 +74,8 @@ class OptionTable(Value, frozen=True):
     def __post_init__(self) -> None:
         for name, made in _fields(type(self)):
             if getattr(self, name) is made:
+                if isinstance(made, Option) and made.default is NODEFAULT:
+                    raise TypeError(f"{type(self).__name__} needs {name}")
                 force_setattr(self, name, made.default if isinstance(made, Option) else made())
 
 
